@@ -167,8 +167,6 @@ void ContactState::touch(const Vec3& x, double travelled) noexcept {
                      !coupled && exceeds_friction(fixed.response, 0)
                          ? slip_to_limit(*model_, before, fixed.response)
                          : LateralSlip{}};
-  if (coupled && unsettled_.any && model_->memory().lateral.any && model_->holds_otherwise(before))
-    settle(fixed.response);
   const double let_go = coupled ? hold(fixed) : 0;
   // What is stored is found in two parts, as the slip and the walk wait for their roots and leave
   // the processor time for it.
@@ -193,11 +191,21 @@ void ContactState::touch(const Vec3& x, double travelled) noexcept {
 /// The contact grows or shrinks with the depth; then its slip is known. @return what its energy
 /// falls by, J
 double ContactState::hold(FixedContact& fixed) noexcept {
-  const double energy = fixed.response.energy;
-  model_->renew_grip(fixed.deflection, fixed.response, pieces_, memory_);
-  if (memory_.relaxes() && model_->memory().lateral.grip != 0) {
-    memory_.carry(model_->place(), model_->memory(), {});
-    model_->set_memory(memory_.now());
+  double energy = fixed.response.energy;
+  if (memory_.relaxes()) {
+    const GripChange change = model_->grip_change(fixed.deflection, pieces_);
+    const bool remembers = change.any() && model_->memory().lateral.any;
+    if (remembers && unsettled_.any) {
+      settle(fixed.response);
+      energy = fixed.response.energy;
+    }
+    model_->renew_grip(change, fixed.deflection, fixed.response, pieces_, memory_);
+    if (remembers) {
+      memory_.carry(model_->place(), model_->memory(), {});
+      model_->set_memory(memory_.now());
+    }
+  } else {
+    model_->renew_grip(fixed.deflection, fixed.response, pieces_);
   }
   if (exceeds_friction(fixed.response, 0))
     fixed.slip = slip_to_limit(*model_, fixed.deflection, fixed.response);
@@ -308,8 +316,17 @@ void ContactState::finish(Candidate& next, const Vec3& x, const FixedContact& fi
   }
   next.model.respond(next.deflection, pieces_, next.response);
   if (settings_.budget == EnergyBudget::Enforced) enforce_budget(next, x, fixed, recovery);
-  next.model.renew_grip(next.deflection, next.response, pieces_, memory_);
+  renew_grip(next);
   if (fractions.slip == 1) enforce_friction(next, fixed.allowance);
+}
+
+void ContactState::renew_grip(Candidate& at) const noexcept {
+  if (!at.model.coupled()) return;
+  if (memory_.relaxes())
+    at.model.renew_grip(at.model.grip_change(at.deflection, pieces_), at.deflection, at.response,
+                        pieces_, memory_);
+  else
+    at.model.renew_grip(at.deflection, at.response, pieces_);
 }
 
 /// Where no offset keeps a slide in the budget c stays fixed and the tool slips over it: with c

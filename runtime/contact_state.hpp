@@ -177,6 +177,7 @@ class ContactState {
   LocalModel stay_opposite(const Vec3& x, std::uint32_t& status) const noexcept;
   LocalModel slip_at_fixed_point(const FixedContact& fixed, double fraction) const noexcept;
   void respond(Candidate& at, const Vec3& x) const noexcept;
+  void renew_grip(Candidate& at) const noexcept;
   void enforce_budget(Candidate& moved, const Vec3& x, const FixedContact& fixed,
                       double recovery) const noexcept;
   void enforce_friction(Candidate& moved, double allowance) const noexcept;

@@ -96,12 +96,12 @@ LateralMemory LateralBranches::carried_to(const LateralPlace& place, double fact
   return there;
 }
 
-LateralMemory LateralBranches::held_at(const LateralPlace& place, const LateralMemory& memory,
-                                       double scale) const noexcept {
+LateralMemory LateralBranches::held_at(const LateralPlace& place,
+                                       const LateralMemory& memory) const noexcept {
   if (!memory.any) return {};
-  LateralMemory there = hold(place, branches_[memory.slide != 0 ? slid_ : here_], scale);
+  LateralMemory there = hold(place, branches_[memory.slide != 0 ? slid_ : here_], memory.held);
   there.stored_and_carried = Pair{there.stored(), memory.carried()};
-  there.held = scale;
+  there.held = memory.held;
   there.slide = memory.slide;
   there.grip = last_grip_ = ++considered_;
   return there;
@@ -109,13 +109,16 @@ LateralMemory LateralBranches::held_at(const LateralPlace& place, const LateralM
 
 void LateralBranches::carry(const LateralPlace& place, const LateralMemory& changed,
                             const Vec3& slid) noexcept {
-  const bool moves = changed.slide != 0, holds = changed.grip != 0;
-  if (changed.any && !moves && !holds) return;
   if (changed.any) {
+    const bool moves = changed.slide != 0, grows = changed.grip != 0;
     // Others may have been considered since.
-    if (holds ? changed.grip != last_grip_ : changed.slide != last_slide_)
+    if (grows ? changed.grip != last_grip_ : moves && changed.slide != last_slide_)
       repeat(place, changed, slid);
-    std::swap(here_, holds ? held_ : slid_);
+    if (grows)
+      std::swap(here_, held_);
+    else if (moves)
+      std::swap(here_, slid_);
+    if (!grows && changed.held != 1) shrink(changed.held);
     last_slide_ = last_grip_ = 0;
     normal_ = place.normal;
   }
@@ -123,6 +126,16 @@ void LateralBranches::carry(const LateralPlace& place, const LateralMemory& chan
   now_.stored_and_carried = Pair{changed.stored(), 1};
   now_.held = 1;
   now_.slide = now_.grip = 0;
+}
+
+/// What a contact that shrinks leaves of the forces; the deflections stay.
+void LateralBranches::shrink(double scale) noexcept {
+  for (std::size_t p = 0; p < pieces_.pairs(); ++p) {
+    BranchPair& branch = branches_[here_][p];
+    for (Pair& force : branch.force) force *= scale;
+    branch.at.force *= scale;
+    branch.at.energy *= scale;
+  }
 }
 
 /// Considers a slide and a grip once more.

@@ -36,12 +36,13 @@ class LateralBranches {
   /// The same at another place: every deflection turns with the normal and is multiplied by
   /// `factor`.
   LateralMemory carried_to(const LateralPlace& place, double factor) const noexcept;
-  /// now(), or the last of carried_to(), where the contact there holds the tissue with other
-  /// weights, no smaller than those before times `scale`: every force M_i is multiplied by it.
-  LateralMemory held_at(const LateralPlace& place, const LateralMemory& memory,
-                        double scale) const noexcept;
-  /// Brings them there, where carried_to() and held_at() have found `changed`; none: they are
-  /// forgotten. slid: the weights at the place before those of a new grip.
+  /// A memory that began as now() or the last of carried_to(), and of which a contact that has
+  /// shrunk may have left a part, where the contact grows to hold the tissue with the weights of
+  /// the place: no M_i changes.
+  LateralMemory held_at(const LateralPlace& place, const LateralMemory& memory) const noexcept;
+  /// Brings them there, and to what is left of their forces, where carried_to() and held_at() have
+  /// found `changed`; none: they are forgotten. slid: the weights at the place before those of a
+  /// contact that has grown.
   void carry(const LateralPlace& place, const LateralMemory& changed, const Vec3& slid) noexcept;
   /// Time passes while the instantaneous force is `target` (N) at a deflection of `lateral` (m):
   /// M_i := target + (M_i - target) decay_i. V falls. K is 0 until settle().
@@ -64,6 +65,7 @@ class LateralBranches {
   bool stays_tangential(const Vec3& normal) const noexcept;
   LateralMemory move(const LateralPlace& place, double factor) const noexcept;
   LateralMemory hold(const LateralPlace& place, const Branches& from, double scale) const noexcept;
+  void shrink(double scale) noexcept;
   void reach(std::size_t p, BranchPair& branch) const noexcept;
   void repeat(const LateralPlace& place, const LateralMemory& changed, const Vec3& slid) noexcept;
 

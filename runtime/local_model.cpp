@@ -85,8 +85,9 @@ LocalModel LocalModel::moved_to(const SurfacePoint& point, ToolPieces& pieces) c
   return there;
 }
 
-void LocalModel::renew_elastic_grip(Deflection& d, LocalResponse& at, ToolPieces& pieces) noexcept {
+void LocalModel::renew_grip(Deflection& d, LocalResponse& at, ToolPieces& pieces) noexcept {
   const double depth = std::max(d.depth, 0.0);
+  if (!coupled() || depth == grip_.depth) return;
   const Vec3 before = weights_;
   weights_ = response_.lateral_weights(depth, pieces.elastic);
   if (!(d.lateral > 0)) {
@@ -110,46 +111,66 @@ void LocalModel::renew_elastic_grip(Deflection& d, LocalResponse& at, ToolPieces
   at = response;
 }
 
-/// Where w falls, every lateral force falls by the same factor, the least with which no vertex is
-/// held by more than its w. Then every vertex is held by its w, and every lateral force stays: q
-/// and the p_i become shorter. Where E would rise by that, the grip only falls by the factor.
-void LocalModel::renew_relaxing_grip(Deflection& d, LocalResponse& at, ToolPieces& pieces,
-                                     const Relaxation& memories) noexcept {
+GripChange LocalModel::grip_change(const Deflection& d, ToolPieces& pieces) const noexcept {
   const double depth = std::max(d.depth, 0.0);
-  const Vec3 held = weights_, wide = response_.lateral_weights(depth, pieces.elastic);
-  double scale = 1;
+  GripChange change;
+  if (depth == grip_.depth && grip_.scale == 1) return change;
+  change.wide = response_.lateral_weights(depth, pieces.elastic);
   for (std::size_t l = 0; l < 3; ++l)
-    if (held[l] > wide[l]) scale = std::min(scale, wide[l] / held[l]);
+    if (weights_[l] > change.wide[l])
+      change.scale = std::min(change.scale, change.wide[l] / weights_[l]);
+  for (std::size_t l = 0; l < 3; ++l)
+    change.grows |= change.wide[l] > (1 + kLeastGrowth) * (change.scale * weights_[l]);
+  return change;
+}
+
+void LocalModel::renew_grip(const GripChange& change, Deflection& d, LocalResponse& at,
+                            ToolPieces& pieces, const Relaxation& memories) noexcept {
+  if (change.scale < 1) shrink_grip(change.scale, at);
+  if (change.grows) grow_grip(change.wide, d, at, pieces, memories);
+}
+
+/// Every lateral force, and what is stored for it, falls by a factor.
+void LocalModel::shrink_grip(double scale, LocalResponse& at) noexcept {
+  weights_ = scale * weights_;
+  grip_.scale *= scale;
+  const Vec3 lateral = at.force - dot(at.force, n_) * n_;
+  at.energy = at.relaxed.energy + scale * (at.energy - at.relaxed.energy);
+  at.force = at.normal_force * n_ + leaning(scale * lateral);
+  at.lateral_force *= scale;
+  at.instant_lateral_force *= scale;
+  LateralMemory& memory = memory_->lateral;
+  memory.relaxed_xy *= scale;
+  memory.relaxed_z *= scale;
+  memory.stored_and_carried[0] *= scale;
+  memory.held *= scale;
+}
+
+/// Every vertex is held by its w, and every lateral force stays: q and the p_i become shorter.
+void LocalModel::grow_grip(const Vec3& wide, Deflection& d, LocalResponse& at, ToolPieces& pieces,
+                           const Relaxation& memories) noexcept {
+  const Vec3 held = weights_;
   const LateralMemory before = memory_->lateral;
-  const auto take = [&](const Vec3& weights) {
-    weights_ = weights;
-    memory_->lateral = memories.held_at(place(), before, scale);
-  };
-  take(wide);
+  weights_ = wide;
+  memory_->lateral = memories.held_at(place(), before);
   Deflection renewed = d;
   if (d.lateral > 0) {
-    const double force = scale * at.instant_lateral_force;
-    renewed.lateral = std::min(lateral_reached(at, force, pieces.relaxing), d.lateral);
+    renewed.lateral =
+        std::min(lateral_reached(at, at.instant_lateral_force, pieces.relaxing), d.lateral);
     if (!(renewed.lateral > 0)) renewed.tangent = {};
   }
   LocalResponse response;
   respond(renewed, pieces, response);
-  if (!(response.energy > at.energy)) {
-    grip_.depth = depth;
-    grip_.scale = 1;
-    add_micro_slip((d.lateral - renewed.lateral) * d.tangent);
-    d = renewed;
-    at = response;
+  if (response.energy > at.energy) {
+    weights_ = held;
+    memory_->lateral = before;
     return;
   }
-  if (scale < 1) {
-    take(scale * held);
-    grip_.scale *= scale;
-    respond(d, pieces, at);
-    return;
-  }
-  weights_ = held;
-  memory_->lateral = before;
+  grip_.depth = std::max(d.depth, 0.0);
+  grip_.scale = 1;
+  add_micro_slip((d.lateral - renewed.lateral) * d.tangent);
+  d = renewed;
+  at = response;
 }
 
 /// Adds to e, and to s what is too much.

@@ -52,6 +52,16 @@ struct Grip {
   double scale = 1;   ///< below 1 only in tissue that relaxes
 };
 
+/// From one grip to the next, in tissue that relaxes.
+struct GripChange {
+  /// n_l w_l at the present depth
+  Vec3 wide{};
+  double scale = 1;    ///< of all weights, where the contact shrinks
+  bool grows = false;  ///< by more than kLeastGrowth
+
+  bool any() const noexcept { return scale < 1 || grows; }
+};
+
 /// Slip with c fixed that brings the lateral force down to a limit.
 struct LateralSlip {
   double distance = 0;  ///< m
@@ -159,29 +169,19 @@ class LocalModel {
   /// are updated.
   void slip(const LateralSlip& by, Deflection& d, LocalResponse& at, ToolPieces& pieces) noexcept;
 
-  /// Takes w at the present depth, where responses are coupled; E does not rise. As the contact
-  /// shrinks, so does the lateral force. As it grows, the lateral force stays: what comes into
-  /// contact holds tissue as it is [Mindlin & Deresiewicz 1953], and e takes the rest of q, up to
-  /// kMostMicroSlip of the tool's radius; beyond it s does. Where E would rise, as a lateral
-  /// response that stiffens sharply lets it, the grip stays. The deflection and the response are
-  /// updated. memories: those of tissue that relaxes, whose energies at this place are known
-  /// where anything is remembered of drags; theory-runtime (R33).
-  void renew_grip(Deflection& d, LocalResponse& at, ToolPieces& pieces,
-                  const Relaxation& memories) noexcept {
-    if (!coupled() || !(holds_otherwise(d))) return;
-    if (memory_)
-      renew_relaxing_grip(d, at, pieces, memories);
-    else
-      renew_elastic_grip(d, at, pieces);
-  }
-  /// The same of tissue that does not relax.
-  void renew_grip(Deflection& d, LocalResponse& at, ToolPieces& pieces) noexcept {
-    if (coupled() && holds_otherwise(d)) renew_elastic_grip(d, at, pieces);
-  }
-  /// Is the grip not that of this depth?
-  bool holds_otherwise(const Deflection& d) const noexcept {
-    return grip_.scale != 1 || grip_.depth != std::max(d.depth, 0.0);
-  }
+  /// Takes w at the present depth, where responses are coupled and do not relax; E does not rise.
+  /// As the contact shrinks, so does the lateral force. As it grows, the lateral force stays: what
+  /// comes into contact holds tissue as it is [Mindlin & Deresiewicz 1953], and e takes the rest of
+  /// q, up to kMostMicroSlip of the tool's radius; beyond it s does. Where E would rise, as a
+  /// lateral response that stiffens sharply lets it, the grip stays. The deflection and the
+  /// response are updated.
+  void renew_grip(Deflection& d, LocalResponse& at, ToolPieces& pieces) noexcept;
+  /// What renewing the grip at the present depth does to that of coupled responses that relax.
+  GripChange grip_change(const Deflection& d, ToolPieces& pieces) const noexcept;
+  /// The same of responses that relax, theory-runtime (R33). memories: those at this place; what
+  /// they store is known where anything is remembered of drags.
+  void renew_grip(const GripChange& change, Deflection& d, LocalResponse& at, ToolPieces& pieces,
+                  const Relaxation& memories) noexcept;
   const Grip& grip() const noexcept { return grip_; }
   void set_grip(const Grip& grip) noexcept {
     grip_ = {grip.depth, grip.micro_slip - dot(grip.micro_slip, n_) * n_, grip.scale};
@@ -192,6 +192,8 @@ class LocalModel {
     return grip.scale * response_.lateral_weights(grip.depth);
   }
   static constexpr double kMostMicroSlip = 0.1;
+  /// Tissue that relaxes is held by up to this less than w: renewing the memories takes time.
+  static constexpr double kLeastGrowth = 1.0 / 512;
 
   /// Rate of change of E when c moves by unit length along d in its element and the anchor c + s by
   /// a', while x stays, J/m:
@@ -278,9 +280,9 @@ class LocalModel {
   /// A^T h t: the part of the force of a lateral force in the response coordinates, N.
   Vec3 leaning(const Vec3& lateral) const noexcept { return lateral - dot(lateral, lean_) * n_; }
   void add_micro_slip(const Vec3& by) noexcept;
-  void renew_elastic_grip(Deflection& d, LocalResponse& at, ToolPieces& pieces) noexcept;
-  void renew_relaxing_grip(Deflection& d, LocalResponse& at, ToolPieces& pieces,
-                           const Relaxation& memories) noexcept;
+  void shrink_grip(double scale, LocalResponse& at) noexcept;
+  void grow_grip(const Vec3& wide, Deflection& d, LocalResponse& at, ToolPieces& pieces,
+                 const Relaxation& memories) noexcept;
   double lateral_reached(const LocalResponse& at, double force, TipPieces& pieces) const noexcept;
   void relax_laterally(const LateralMemory& memory, const LateralMemory& before,
                        const Deflection& d, LocalResponse& r) const noexcept;

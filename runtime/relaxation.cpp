@@ -79,11 +79,11 @@ TissueMemory Relaxation::carried_to(const ContactPlace& place, double distance,
   return there;
 }
 
-LateralMemory Relaxation::held_at(const ContactPlace& place, const LateralMemory& memory,
-                                  double scale) const noexcept {
+LateralMemory Relaxation::held_at(const ContactPlace& place,
+                                  const LateralMemory& memory) const noexcept {
   const bool here = surface_->relaxes_alike() || memory.slide == 0;
   return lateral_.held_at(
-      {&place.response, here ? &fractions_ : &there_, place.normal, place.weights}, memory, scale);
+      {&place.response, here ? &fractions_ : &there_, place.normal, place.weights}, memory);
 }
 
 void Relaxation::carry(const ContactPlace& place, const TissueMemory& changed,

@@ -45,10 +45,9 @@ class Relaxation {
   /// The same after a slide of the contact point to a place `distance` (m) away: every memory is
   /// multiplied by exp(-distance/radius), normal ones by less where R would rise there.
   TissueMemory carried_to(const ContactPlace& place, double distance, Shear shear) const noexcept;
-  /// A lateral memory at a place, now() or the last of carried_to(), where the contact holds the
-  /// tissue with the weights of the place: every M_i is multiplied by `scale`.
-  LateralMemory held_at(const ContactPlace& place, const LateralMemory& memory,
-                        double scale) const noexcept;
+  /// A lateral memory at a place, now() or the last of carried_to(), where the contact there has
+  /// grown to hold the tissue with the weights of the place: no M_i changes.
+  LateralMemory held_at(const ContactPlace& place, const LateralMemory& memory) const noexcept;
   /// Makes that slide, and takes that grip. slid: the weights at the place before the grip.
   void carry(const ContactPlace& place, const TissueMemory& changed, const Vec3& slid) noexcept;
   /// A time dt (s) while the instantaneous normal force at the tool is g (N):

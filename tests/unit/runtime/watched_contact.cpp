@@ -270,28 +270,34 @@ std::vector<Vec3> MemoryTwin::shrunk(double depth, double& scale) const {
   return forces;
 }
 
-/// The contact takes the width of the depth that a local model has at x, where that does not raise
-/// the energy: (R33).
+/// The contact takes the width of the depth that a local model has at x, (R33): where it shrinks,
+/// all forces fall alike; where it grows by more than a 512th, no force changes, unless the energy
+/// would rise.
 runtime::Grip MemoryTwin::renew(const runtime::ContactObservation& model, const Vec3& x) {
   const ModelEnergy at = model_energy(library_, model, x);
   const runtime::Grip wide{std::max(at.depth, 0.0), {}, 1};
+  const std::array<double, 3> weights = lateral_weights(library_, place_, wide);
   const Vec3& q = at.lateral_deflection;
   double scale = 1;
   const std::vector<Vec3> forces = shrunk(at.depth, scale);
-  const Vec3 force = scale * gradient(q);
+  for (double& w : held_) w *= scale;
+  const runtime::Grip shrunk_grip{model.grip.depth, {}, model.grip.scale * scale};
+  bool grows = false;
+  for (std::size_t l = 0; l < 3; ++l) grows = grows || weights[l] > (1 + 1.0 / 512) * held_[l];
+  if (!grows) return shrunk_grip;
+  const Vec3 force = gradient(q);
   // With the energy of the press, so that what is less than its rounding decides nothing.
   const double press = normal_energy(now_, at);
   const double before = press + (lateral_work(norm(q)) + lateral_energy(q));
   const std::array<double, 3> held = held_;
   const std::vector<Vec3> dragged = dragged_;
-  held_ = lateral_weights(library_, place_, wide);
+  held_ = weights;
   keep(forces);
   const Vec3 there = deflection_of(force, norm(q));
   if (press + (lateral_work(norm(there)) + lateral_energy(there)) <= before) return wide;
   held_ = held;
-  for (double& w : held_) w *= scale;
   dragged_ = dragged;
-  return {model.grip.depth, {}, model.grip.scale * scale};
+  return shrunk_grip;
 }
 
 /// To another normal, by the rotation about the axis of both, and away from the tissue.
