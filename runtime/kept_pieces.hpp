@@ -49,17 +49,13 @@ class KeptPieces {
 
   /// The response of what follows, with weights of its own for h.
   void keep_for(const InterpolatedResponse& response, const Vec3& lateral) noexcept {
-    const bool same = is_of(response.nodes());
-    const auto& first = first_ == ResponseOf::Depth ? response.natural() : lateral;
-    const auto& other = other_ == ResponseOf::Depth ? response.natural() : lateral;
+    const Vec3& first = first_ == ResponseOf::Depth ? response.natural() : lateral;
+    const Vec3& other = other_ == ResponseOf::Depth ? response.natural() : lateral;
     const std::array<Pair, 3> weights{Pair{first[0], other[0]}, Pair{first[1], other[1]},
                                       Pair{first[2], other[2]}};
-    if (same && all(equal(weights[0], weights_[0]) & equal(weights[1], weights_[1]) &
-                    equal(weights[2], weights_[2])))
-      return;
-    weights_ = weights;
-    if (!same) find_all(response.nodes());
-    for (std::size_t p = 0; p < pairs(); ++p) merge(pieces_[p]);
+    const bool same_weights = all(equal(weights[0], weights_[0]) & equal(weights[1], weights_[1]) &
+                                  equal(weights[2], weights_[2]));
+    if (!same_weights || !is_of(response.nodes())) begin(response.nodes(), weights);
   }
   void keep_for(const InterpolatedResponse& response) noexcept {
     keep_for(response, response.natural());
@@ -133,6 +129,12 @@ class KeptPieces {
     on.end_force = length < both(kInfinity) ? end : both(kInfinity);
   }
 
+  void begin(const std::array<const NodeCurves*, 3>& nodes,
+             const std::array<Pair, 3>& weights) noexcept {
+    weights_ = weights;
+    if (!is_of(nodes)) find_all(nodes);
+    for (std::size_t p = 0; p < pairs(); ++p) merge(pieces_[p]);
+  }
   void find_all(const std::array<const NodeCurves*, 3>& nodes) noexcept;
   ReachedForces reach_elsewhere(std::size_t p, Pair force) noexcept;
   ReachedForces evaluate_elsewhere(std::size_t p, Pair deflection) noexcept;

@@ -107,6 +107,17 @@ class Libraries(unittest.TestCase):
         self.assertGreater(held / elastic, 0.25)
         self.assertLess(held / elastic, 0.40)
 
+    def test_a_drag_of_tissue_that_is_held_gives_way_as_a_press_does(self):
+        with Body(LIBRARIES / "gel.plib") as gel, Body(LIBRARIES / "tissue.plib") as tissue:
+            path = slide(0.025, 0.025, 0.003, 3e-4)  # within friction
+            elastic = gel.forces(path, 1e-9)[-1][0]
+            at_once = tissue.forces(path, 1e-9)[-1][0]
+            held = tissue.forces(path + [path[-1]] * 12000, 1e-3)[-1][0]
+        self.assertGreater(abs(elastic), 0.01)
+        self.assertAlmostEqual(at_once / elastic, 1, delta=0.01)
+        self.assertGreater(held / elastic, 0.25)
+        self.assertLess(held / elastic, 0.40)
+
 
 if __name__ == "__main__":
     unittest.main(argv=sys.argv[:1], verbosity=2)
