@@ -15,8 +15,14 @@ namespace {
 
 constexpr std::size_t kMemoryStep = std::size_t{1} << 20;
 constexpr unsigned kDeflateLevel = 4;
+/// Bytes from which deflating pays: chunks take some 2 kB to find them.
+constexpr std::size_t kWorthDeflating = std::size_t{6} << 10;
 
 enum class Storage { Contiguous, Deflated };
+
+std::size_t size_of(Scalar scalar) {
+  return H5Tget_size(stored_type(scalar));
+}
 
 }  // namespace
 
@@ -130,7 +136,9 @@ Handle Writer::State::make_dataset(const std::string& path, Scalar scalar, std::
 
 void Writer::put(const std::string& path, Scalar scalar, std::size_t rows, std::size_t columns,
                  const void* data, const About& about) {
-  const Handle dataset = state_->make_dataset(path, scalar, rows, columns, Storage::Contiguous);
+  const std::size_t bytes = rows * std::max<std::size_t>(columns, 1) * size_of(scalar);
+  const Storage storage = bytes < kWorthDeflating ? Storage::Contiguous : Storage::Deflated;
+  const Handle dataset = state_->make_dataset(path, scalar, rows, columns, storage);
   if (rows > 0) {
     state_->check(H5Dwrite(dataset.get(), native_type(scalar), H5S_ALL, H5S_ALL, H5P_DEFAULT, data),
                   path);

@@ -92,6 +92,19 @@ TEST_F(Hdf5Writer, AppendsToALongDatasetInChunks) {
   EXPECT_EQ(raw.numbers(rows), all);
 }
 
+TEST_F(Hdf5Writer, DeflatesWhatIsLong) {
+  std::vector<double> rising(10000);
+  for (std::size_t i = 0; i < rising.size(); ++i) rising[i] = static_cast<double>(i);
+  Writer writer(file_);
+  writer.dataset<double>("/long", rising, {"1", "Rising."});
+  writer.dataset<double>("/short", {1, 2, 3}, {"1", "Short."});
+  writer.commit();
+  EXPECT_EQ(Raw(file_, "/long").layout(), H5D_CHUNKED);
+  EXPECT_EQ(Raw(file_, "/long").numbers(rising.size()), rising);
+  EXPECT_EQ(Raw(file_, "/short").layout(), H5D_CONTIGUOUS);
+  EXPECT_LT(std::filesystem::file_size(file_), 4 * rising.size());
+}
+
 /// Equal content gives equal bytes, in memory or on the disk.
 TEST_F(Hdf5Writer, DoesNotDependOnWhereTheFileIsBuilt) {
   const auto fill = [](Writer& writer) {
