@@ -119,8 +119,8 @@ GripChange LocalModel::grip_change(const Deflection& d, ToolPieces& pieces) cons
   for (std::size_t l = 0; l < 3; ++l)
     if (weights_[l] > change.wide[l])
       change.scale = std::min(change.scale, change.wide[l] / weights_[l]);
-  for (std::size_t l = 0; l < 3; ++l)
-    change.grows |= change.wide[l] > (1 + kLeastGrowth) * (change.scale * weights_[l]);
+  const auto sum = [](const Vec3& w) { return w[0] + w[1] + w[2]; };
+  change.grows = sum(change.wide) > (1 + kLeastGrowth) * (change.scale * sum(weights_));
   return change;
 }
 

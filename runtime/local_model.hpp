@@ -192,7 +192,8 @@ class LocalModel {
     return grip.scale * response_.lateral_weights(grip.depth);
   }
   static constexpr double kMostMicroSlip = 0.1;
-  /// Tissue that relaxes is held by up to this less than w: renewing the memories takes time.
+  /// Tissue that relaxes is held by up to this less than sum n_l w_l: renewing its memories takes
+  /// time.
   static constexpr double kLeastGrowth = 1.0 / 512;
 
   /// Rate of change of E when c moves by unit length along d in its element and the anchor c + s by

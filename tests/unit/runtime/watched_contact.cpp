@@ -282,9 +282,8 @@ runtime::Grip MemoryTwin::renew(const runtime::ContactObservation& model, const 
   const std::vector<Vec3> forces = shrunk(at.depth, scale);
   for (double& w : held_) w *= scale;
   const runtime::Grip shrunk_grip{model.grip.depth, {}, model.grip.scale * scale};
-  bool grows = false;
-  for (std::size_t l = 0; l < 3; ++l) grows = grows || weights[l] > (1 + 1.0 / 512) * held_[l];
-  if (!grows) return shrunk_grip;
+  const auto sum = [](const std::array<double, 3>& w) { return w[0] + w[1] + w[2]; };
+  if (!(sum(weights) > (1 + 1.0 / 512) * sum(held_))) return shrunk_grip;
   const Vec3 force = gradient(q);
   // With the energy of the press, so that what is less than its rounding decides nothing.
   const double press = normal_energy(now_, at);
