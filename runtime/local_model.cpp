@@ -71,14 +71,7 @@ void LocalModel::slip(const LateralSlip& by, Deflection& d, LocalResponse& at,
 }
 
 LocalModel LocalModel::moved_to(const SurfacePoint& point, ToolPieces& pieces) const noexcept {
-  LocalModel there = *this;
-  there.point_ = point;
-  there.c_ = surface_->position(point);
-  there.n_ = surface_->normal(point);
-  there.lean_ = surface_->lean(point, there.n_);
-  there.response_ = surface_->response(point);
-  there.lateral_offset_ = {};
-  there.memory_.reset();
+  LocalModel there(*surface_, point, offset_, grip_);
   if (!coupled()) return there;
   there.grip_.micro_slip = grip_.micro_slip - dot(grip_.micro_slip, there.n_) * there.n_;
   there.weights_ = grip_.scale * there.response_.lateral_weights(grip_.depth, pieces.elastic);

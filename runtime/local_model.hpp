@@ -89,13 +89,7 @@ struct LateralSlip {
 class LocalModel {
  public:
   LocalModel(const Surface& surface, const SurfacePoint& point, double offset) noexcept
-      : surface_(&surface),
-        point_(point),
-        c_(surface.position(point)),
-        n_(surface.normal(point)),
-        lean_(surface.lean(point, n_)),
-        response_(surface.response(point)),
-        offset_(offset) {
+      : LocalModel(surface, point, offset, Grip{}) {
     if (coupled()) weights_ = response_.lateral_weights(0);
   }
   /// The same contact at another point, with its offset and its grip. s is zero, memory none.
@@ -248,6 +242,17 @@ class LocalModel {
   }
 
  private:
+  /// Without weights.
+  LocalModel(const Surface& surface, const SurfacePoint& point, double offset,
+             const Grip& grip) noexcept
+      : surface_(&surface),
+        point_(point),
+        c_(surface.position(point)),
+        n_(surface.normal(point)),
+        lean_(surface.lean(point, n_)),
+        response_(surface.response(point)),
+        offset_(offset),
+        grip_(grip) {}
   const Vec3& lateral_weights() const noexcept {
     return coupled() ? weights_ : response_.natural();
   }
