@@ -54,8 +54,7 @@ struct Grip {
 
 /// From one grip to the next, in tissue that relaxes.
 struct GripChange {
-  /// n_l w_l at the present depth
-  Vec3 wide{};
+  Vec3 wide{};         ///< n_l w_l at the present depth
   double scale = 1;    ///< of all weights, where the contact shrinks
   bool grows = false;  ///< by more than kLeastGrowth
 
