@@ -422,5 +422,48 @@ TEST(LateralBranches, TurnWithTheNormalAndKeepTheirEnergy) {
   EXPECT_FALSE(branches.carried_to({&response, &fractions, -aside, weights}, 1).any);
 }
 
+TEST(LateralBranches, AChangeThatIsChosenAfterOthersWereConsideredIsTheSame) {
+  const Library library = relaxing(plate(2, 0.08, stiffening), kTimes, true);
+  const palpate_library body(library);
+  const runtime::InterpolatedResponse response = body.surface.response({0, {0.2, 0.5, 0.3}});
+  const runtime::InterpolatedResponse other = body.surface.response({0, {0.6, 0.1, 0.3}});
+  runtime::Lanes fractions, decay;
+  for (const std::size_t i : {0U, 1U}) {
+    fractions.set(i, 0.25);
+    decay.set(i, i == 0 ? 0.1 : 0.7);
+  }
+  const Vec3 down{0, 0, -1};
+  const Vec3 narrow = 0.5 * response.natural(), wide = 0.8 * response.natural();
+  const runtime::LateralPlace here{&response, &fractions, down, narrow};
+  const runtime::LateralPlace slid{&response, &fractions, {0.6, 0, -0.8}, narrow};
+  const runtime::LateralPlace grown{&response, &fractions, {0.6, 0, -0.8}, wide};
+  const runtime::LateralPlace elsewhere{&other, &fractions, {0, 0.6, -0.8}, other.natural()};
+  const auto carried = [&](bool considers_others, double held, bool grows) {
+    runtime::LateralBranches branches(2);
+    branches.pass(here, {0.1, 0.05, 0}, 4e-3, decay);
+    branches.settle(branches.find_stored(here));
+    runtime::LateralMemory chosen = branches.carried_to(slid, 0.9);
+    chosen.held = held;  // the contact has shrunk there
+    chosen.relaxed_xy *= held;
+    chosen.relaxed_z *= held;
+    if (grows) chosen = branches.held_at(grown, chosen);
+    if (considers_others) branches.held_at(elsewhere, branches.carried_to(elsewhere, 0.3));
+    const runtime::LateralPlace& end = grows ? grown : slid;
+    branches.carry(end, chosen, narrow);
+    // What the branches then are shows in what they store, and where they go on.
+    return std::pair(branches.now().relaxed(),
+                     std::pair(branches.find_stored(end), branches.carried_to(end, 0.5).relaxed()));
+  };
+  for (const bool grows : {false, true})
+    for (const double held : {1.0, 0.6}) {
+      const auto at_once = carried(false, held, grows), later = carried(true, held, grows);
+      EXPECT_GT(norm(at_once.first), 0.01);
+      EXPECT_GT(at_once.second.first, 1e-6);
+      EXPECT_NEAR(norm(later.first - at_once.first), 0, 1e-15);
+      EXPECT_NEAR(later.second.first, at_once.second.first, 1e-17);
+      EXPECT_NEAR(norm(later.second.second - at_once.second.second), 0, 1e-15);
+    }
+}
+
 }  // namespace
 }  // namespace palpate::test
