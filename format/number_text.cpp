@@ -54,6 +54,7 @@ std::string force_text(double newtons) {
 
 std::string energy_text(double joules) {
   const double size = std::abs(joules);
+  if (size >= 1) return number_text(joules) + " J";
   if (size >= 1e-4 || size == 0 || !std::isfinite(size)) return number_text(1e3 * joules) + " mJ";
   if (size >= 1e-7) return number_text(1e6 * joules) + " uJ";
   return number_text(1e9 * joules) + " nJ";

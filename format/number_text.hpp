@@ -20,7 +20,7 @@ std::string force_text(double newtons);
 /// "12.4 mm", "3.40 um" or "5.00 nm".
 std::string length_text(double metres);
 
-/// "12.4 mJ", "0.124 mJ" or "3.40 nJ".
+/// "12.4 J", "12.4 mJ", "0.124 mJ" or "3.40 nJ".
 std::string energy_text(double joules);
 
 /// Two significant digits of a fraction: "0.43 %", "17 %"; "below 0.01 %" for what is less.

@@ -47,6 +47,8 @@ TEST(NumberText, ForcesHaveTheUnitOfTheirSize) {
 }
 
 TEST(NumberText, EnergiesHaveTheUnitOfTheirSize) {
+  EXPECT_EQ(energy_text(5010), "5010 J");
+  EXPECT_EQ(energy_text(0.346), "346 mJ");
   EXPECT_EQ(energy_text(0.346e-3), "0.346 mJ");
   EXPECT_EQ(energy_text(-9.677e-6), "-9.68 uJ");
   EXPECT_EQ(energy_text(3.4e-12), "0.00340 nJ");
