@@ -18,7 +18,7 @@ struct NormalField {
   std::vector<float> skin;  ///< (3 W) m, displacement since before the touch
 };
 
-/// The skin at the end of one lateral path, less the skin at its start.
+/// The skin at a state of a lateral path, less the skin at its start.
 struct LateralField {
   double depth = 0;         ///< m, at which the path runs
   Vec3 direction{};         ///< unit

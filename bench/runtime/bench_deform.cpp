@@ -8,6 +8,9 @@
 // as a picture takes without using palpate, and beside the pictures. The three take turns of half a
 // second, so that all meet the same other work of the machine. What pictures add is `pictures` less
 // `computing`; `realtime` is 1 where the loop had real-time rights.
+// A step begins late because the system wakes the loop late, or because the step before took too
+// long: `overran` counts the steps that themselves took more than half a period, `longest_us` is
+// the longest of all.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -83,14 +86,15 @@ struct Scene {
   palpate_state state;
 };
 
-/// The lateness of the steps of a loop.
+/// The lateness of the steps of a loop, and how long they took.
 struct Lateness {
-  std::int64_t steps = 0, late = 0, worst_ns = 0;
+  std::int64_t steps = 0, late = 0, worst_ns = 0, overran = 0, longest_ns = 0;
 
   double in_thousand() const {
     return 1e3 * static_cast<double>(late) / static_cast<double>(steps);
   }
   double worst_us() const { return 1e-3 * static_cast<double>(worst_ns); }
+  double longest_us() const { return 1e-3 * static_cast<double>(longest_ns); }
 };
 
 /// Steps at their times until told to end.
@@ -101,10 +105,13 @@ bool run_loop(Scene& scene, const std::atomic<bool>& over, Lateness& lateness) {
   do {
     due += kPeriodNs;
     runtime::sleep_until(due);
-    const std::int64_t behind = runtime::monotonic_ns() - due;
-    lateness.worst_ns = std::max(lateness.worst_ns, behind);
-    if (behind > kPeriodNs / 2) ++lateness.late;
+    const std::int64_t begin = runtime::monotonic_ns();
+    lateness.worst_ns = std::max(lateness.worst_ns, begin - due);
+    if (begin - due > kPeriodNs / 2) ++lateness.late;
     scene.step(1e-9 * static_cast<double>(kPeriodNs) * static_cast<double>(++lateness.steps));
+    const std::int64_t took = runtime::monotonic_ns() - begin;
+    lateness.longest_ns = std::max(lateness.longest_ns, took);
+    if (took > kPeriodNs / 2) ++lateness.overran;
   } while (!over);
   return realtime;
 }
@@ -171,6 +178,8 @@ void deform_beside_a_loop(benchmark::State& state) {
                                  std::pair{"pictures", &pictures}}) {
     state.counters[std::string("late_") + name] = of->in_thousand();
     state.counters[std::string("worst_us_") + name] = of->worst_us();
+    state.counters[std::string("overran_") + name] = static_cast<double>(of->overran);
+    state.counters[std::string("longest_us_") + name] = of->longest_us();
   }
 }
 

@@ -114,7 +114,8 @@ class OpenSites {
     });
     std::optional<FieldRecorder> recorder;
     if (keeps_fields()) {
-      recorder.emplace(solver, context_, skin_.node, settings_.field_depths);
+      recorder.emplace(solver, context_, skin_.node, settings_.field_depths,
+                       settings_.whole_lateral_fields);
       solver.also_across(context_.indentation.azimuths.size() == 1);
     }
     SiteCurves site = solver.solve(result.vertex);

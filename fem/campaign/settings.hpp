@@ -91,6 +91,8 @@ struct CampaignSettings {
   /// is not kept.
   std::function<void(SiteFields)> fields;
   int field_depths = 0;  ///< number of depths that are kept, see fem::field_depths
+  /// Keeps every increment of the lateral paths, and the press at their depths; else their ends.
+  bool whole_lateral_fields = false;
   std::function<void(const CampaignProgress&)> progress;
   /// Called at the start and after every increment of every site, from one thread at a time; may be
   /// null.

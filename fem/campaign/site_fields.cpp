@@ -33,30 +33,41 @@ std::vector<double> field_depths(const IndentationSettings& settings, int count)
 }
 
 FieldRecorder::FieldRecorder(SiteSolver& solver, const CampaignContext& context,
-                             const std::vector<std::int32_t>& nodes, int depths)
-    : context_(context), nodes_(nodes), depths_(field_depths(context.indentation, depths)) {
+                             const std::vector<std::int32_t>& nodes, int depths,
+                             bool whole_lateral_paths)
+    : context_(context),
+      nodes_(nodes),
+      depths_(field_depths(context.indentation, depths)),
+      whole_lateral_paths_(whole_lateral_paths) {
   solver.observe([this](const ToolContact&, const Displacement& u, const CurveSample& sample) {
-    const double depth = sample.displacement;
-    if (among(depths_, depth)) fields_.normal.push_back({depth, since_rest(u)});
-    if (among(context_.indentation.lateral_depths, depth))
-      lateral_starts_.insert_or_assign(depth, since_rest(u));
+    keep_press(sample.displacement, u);
   });
   solver.observe_lateral([this](const LateralPlan& plan, const ToolContact&, const Displacement& u,
                                 const CurveSample& sample) {
-    const auto start = std::find_if(
-        lateral_starts_.begin(), lateral_starts_.end(),
-        [&](const auto& entry) { return same_depth(entry.first, plan.lateral_depth); });
-    if (start == lateral_starts_.end()) return;
-    LateralField field{plan.lateral_depth, plan.direction, sample.displacement, since_rest(u)};
-    for (std::size_t i = 0; i < field.skin.size(); ++i) field.skin[i] -= start->second[i];
-    // Each state of a path replaces the one before.
-    const bool goes_on = !fields_.lateral.empty() && fields_.lateral.back().depth == field.depth &&
-                         fields_.lateral.back().direction == field.direction;
-    if (goes_on)
-      fields_.lateral.back() = std::move(field);
-    else
-      fields_.lateral.push_back(std::move(field));
+    keep_lateral({plan.lateral_depth, plan.direction, sample.displacement, since_rest(u)});
   });
+}
+
+void FieldRecorder::keep_press(double depth, const Displacement& u) {
+  const bool starts_path = among(context_.indentation.lateral_depths, depth);
+  if (starts_path) lateral_starts_.insert_or_assign(depth, since_rest(u));
+  if (among(depths_, depth) || (starts_path && whole_lateral_paths_))
+    fields_.normal.push_back({depth, since_rest(u)});
+}
+
+void FieldRecorder::keep_lateral(LateralField field) {
+  const auto start =
+      std::find_if(lateral_starts_.begin(), lateral_starts_.end(),
+                   [&](const auto& entry) { return same_depth(entry.first, field.depth); });
+  if (start == lateral_starts_.end()) return;
+  for (std::size_t i = 0; i < field.skin.size(); ++i) field.skin[i] -= start->second[i];
+  auto& kept = fields_.lateral;
+  const bool goes_on = !kept.empty() && kept.back().depth == field.depth &&
+                       kept.back().direction == field.direction;
+  if (goes_on && !whole_lateral_paths_)
+    kept.back() = std::move(field);
+  else
+    kept.push_back(std::move(field));
 }
 
 SiteFields FieldRecorder::take(std::int32_t vertex) {

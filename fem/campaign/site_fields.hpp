@@ -20,18 +20,24 @@ std::vector<double> field_depths(const IndentationSettings& settings, int count)
 class FieldRecorder {
  public:
   /// `solver` and `context` must outlive the recorder, and the recorder the solutions.
+  /// `whole_lateral_paths`: keeps every increment of the lateral paths, not the last alone, and the
+  /// press at each of their depths.
   FieldRecorder(SiteSolver& solver, const CampaignContext& context,
-                const std::vector<std::int32_t>& nodes, int depths);
+                const std::vector<std::int32_t>& nodes, int depths,
+                bool whole_lateral_paths = false);
 
   /// The fields of the site solved last, without the digest of its curves.
   SiteFields take(std::int32_t vertex);
 
  private:
   std::vector<float> since_rest(const Displacement& u) const;
+  void keep_press(double depth, const Displacement& u);
+  void keep_lateral(LateralField field);
 
   const CampaignContext& context_;
   const std::vector<std::int32_t>& nodes_;
   std::vector<double> depths_;
+  bool whole_lateral_paths_;
   std::map<double, std::vector<float>> lateral_starts_;  ///< by depth
   SiteFields fields_;
 };

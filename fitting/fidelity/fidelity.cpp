@@ -68,9 +68,7 @@ class Presses {
       if (!normal) state.tangent = path.direction;
       state.direct = sample.force;
       state.scale = std::max(norm(sample.force), settings_.floor);
-      const double push = dot(sample.force, point.inward);
-      const double drag = norm(sample.force - push * point.inward);
-      state.within_friction = drag <= settings_.friction * push;
+      state.within_friction = within_friction(sample.force, point.inward, settings_.friction);
       states.push_back(state);
       deflections.push_back({state.depth, state.lateral, state.tangent});
     }

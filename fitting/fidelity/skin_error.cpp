@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 #include "fitting/measurement/nearest_rank.hpp"
@@ -20,6 +21,7 @@ class Errors {
 
   void add(double error, std::size_t point) { errors_.emplace_back(error, point); }
   void add_state() { ++states_; }
+  bool empty() const { return states_ == 0; }
 
   SkinErrorRow row() {
     SkinErrorRow row;
@@ -43,6 +45,13 @@ class Errors {
   std::vector<std::pair<double, std::size_t>> errors_;  ///< with the index of the point
 };
 
+/// Those of the vertices near the tool, and of all.
+struct NearAndAll {
+  explicit NearAndAll(const std::string& what)
+      : near(what + ", within 3 tool radii"), all(what + ", whole skin") {}
+  Errors near, all;
+};
+
 Vec3 direct_at(const std::vector<float>& skin, std::size_t vertex) {
   return {static_cast<double>(skin[3 * vertex]), static_cast<double>(skin[3 * vertex + 1]),
           static_cast<double>(skin[3 * vertex + 2])};
@@ -61,10 +70,24 @@ std::vector<State> presses(const SiteFields& fields) {
   return states;
 }
 
+/// The force at a state of a lateral path.
+Vec3 force_at(const SiteCurves& curves, const LateralField& field) {
+  for (const CurvePath& path : curves.paths) {
+    if (path.kind != PathKind::Lateral || path.lateral_depth != field.depth ||
+        path.direction != field.direction)
+      continue;
+    for (const CurveSample& sample : path.samples)
+      if (sample.displacement == field.travel) return sample.force;
+  }
+  refuse("direct fields", "have a state without a force", "remove them and compare again");
+}
+
 /// A lateral field is relative to the press at its start.
-std::vector<State> deflections(const SiteFields& fields) {
+std::vector<State> deflections(const SiteFields& fields,
+                               const std::function<bool(const LateralField&)>& chosen) {
   std::vector<State> states;
   for (const LateralField& field : fields.lateral) {
+    if (!chosen(field)) continue;
     const auto start =
         std::find_if(fields.normal.begin(), fields.normal.end(), [&](const NormalField& press) {
           return std::abs(press.depth - field.depth) < 1e-6 * field.depth;
@@ -83,21 +106,21 @@ class SkinMeasure {
       : body_(body), skin_(skin), near_(kNearRadii * tool_radius) {}
 
   void compare(const HoldOutPoint& p, std::size_t point, const std::vector<State>& states,
-               Errors& near, Errors& all) const {
+               NearAndAll& errors) const {
     std::vector<RenderedBody::Deflection> path;
     for (const State& state : states) path.push_back(state.deflection);
     const auto rendered = body_.displace(skin_, p.position, p.inward, path);
     for (std::size_t i = 0; i < states.size(); ++i) {
       const RenderedBody::Deflection& d = states[i].deflection;
-      near.add_state();
-      all.add_state();
+      errors.near.add_state();
+      errors.all.add_state();
       if (states[i].direct.size() != 3 * rendered[i].size())
         refuse("direct fields", "are of another body", "remove them and compare again");
       for (std::size_t w = 0; w < rendered[i].size(); ++w) {
         const double error =
             norm(rendered[i][w] - direct_at(states[i].direct, w)) / std::hypot(d.depth, d.lateral);
-        all.add(error, point);
-        if (norm(skin_.at_rest()[w] - p.position) <= near_) near.add(error, point);
+        errors.all.add(error, point);
+        if (norm(skin_.at_rest()[w] - p.position) <= near_) errors.near.add(error, point);
       }
     }
   }
@@ -112,17 +135,28 @@ class SkinMeasure {
 
 std::vector<SkinErrorRow> measure_skin(const RenderedBody& body, const RenderedSkin& skin,
                                        const std::vector<HoldOutPoint>& points,
-                                       const std::vector<SiteFields>& direct, double tool_radius) {
-  const SkinMeasure measure(body, skin, tool_radius);
-  Errors near_press("press, within 3 tool radii"), all_press("press, whole skin"),
-      near_lateral("lateral, within 3 tool radii"), all_lateral("lateral, whole skin");
-  for (const SiteFields& fields : direct) {
-    const auto point = static_cast<std::size_t>(fields.vertex);
+                                       const std::vector<DirectSkin>& direct,
+                                       const SkinErrorSettings& settings) {
+  const SkinMeasure measure(body, skin, settings.tool_radius);
+  NearAndAll press("press"), held("lateral within friction"), beyond("lateral beyond friction");
+  for (const DirectSkin& site : direct) {
+    const auto point = static_cast<std::size_t>(site.fields.vertex);
     if (point >= points.size()) continue;
-    measure.compare(points[point], point, presses(fields), near_press, all_press);
-    measure.compare(points[point], point, deflections(fields), near_lateral, all_lateral);
+    const HoldOutPoint& p = points[point];
+    const auto is_held = [&](const LateralField& field) {
+      return within_friction(force_at(site.curves, field), p.inward, settings.friction);
+    };
+    measure.compare(p, point, presses(site.fields), press);
+    measure.compare(p, point, deflections(site.fields, is_held), held);
+    measure.compare(p, point, deflections(site.fields, std::not_fn(is_held)), beyond);
   }
-  return {near_press.row(), all_press.row(), near_lateral.row(), all_lateral.row()};
+  std::vector<SkinErrorRow> rows;
+  for (NearAndAll* errors : {&press, &held, &beyond}) {
+    if (errors->all.empty()) continue;
+    rows.push_back(errors->near.row());
+    rows.push_back(errors->all.row());
+  }
+  return rows;
 }
 
 }  // namespace palpate::fidelity

@@ -8,6 +8,7 @@
 
 #include "fitting/fidelity/hold_out.hpp"
 #include "fitting/fidelity/rendered_press.hpp"
+#include "format/curves.hpp"
 #include "format/site_fields.hpp"
 
 namespace palpate::fidelity {
@@ -21,11 +22,25 @@ struct SkinErrorRow {
   std::size_t worst_point = 0;
 };
 
-/// The skin pressed at the points, each state of each field: presses and the ends of lateral paths.
-/// The vertices within three tool radii of the contact point, and all. Fields without a point, by
-/// SiteFields::vertex, and lateral fields without a press to their depth are left out.
+/// A direct solution: its forces, and the displacement of the skin at its states.
+struct DirectSkin {
+  const SiteCurves& curves;
+  SiteFields fields;
+};
+
+struct SkinErrorSettings {
+  double tool_radius = 0;  ///< m
+  double friction = 0;     ///< which divides the states of the lateral paths
+};
+
+/// The skin pressed at the points, each state of each field: presses, and states of lateral paths
+/// within and beyond friction. The vertices within three tool radii of the contact point, and all.
+/// No rows of a kind without states. Fields without a point, by SiteFields::vertex, and lateral
+/// fields without a press to their depth are left out. @throws Error(Configuration) where a field
+/// is of another body, or has no force.
 std::vector<SkinErrorRow> measure_skin(const RenderedBody& body, const RenderedSkin& skin,
                                        const std::vector<HoldOutPoint>& points,
-                                       const std::vector<SiteFields>& direct, double tool_radius);
+                                       const std::vector<DirectSkin>& direct,
+                                       const SkinErrorSettings& settings);
 
 }  // namespace palpate::fidelity

@@ -95,6 +95,38 @@ TEST(SiteFieldsOfCampaign, AreTheDisplacementsOfTheSkin) {
   }
 }
 
+TEST(SiteFieldsOfCampaign, WholeLateralPathsEndAsTheirEnds) {
+  const Body body = test::make_block(test::graded(0.03, 0.005, 0.0025, 1.5),
+                                     test::graded(0.03, 0.005, 0.0025, 1.5),
+                                     {-0.03, -0.02, -0.012, -0.006, -0.003, 0});
+  CampaignSettings settings = field_settings();
+  settings.indentation.lateral_depths = {0.0015};  // not among the depths of the fields
+  settings.indentation.azimuths = {0, 1};
+  settings.sites = {test::site_nearest(body)};
+  settings.field_depths = 1;
+  std::vector<SiteFields> kept;
+  settings.fields = [&](SiteFields fields) { kept.push_back(std::move(fields)); };
+  CampaignReport report;
+  run_campaign(body, settings, report);
+  settings.whole_lateral_fields = true;
+  run_campaign(body, settings, report);
+  ASSERT_EQ(kept.size(), 2U);
+  const SiteFields &ends = kept[0], &whole = kept[1];
+
+  ASSERT_EQ(ends.normal.size(), 1U);
+  ASSERT_EQ(whole.normal.size(), 2U);
+  EXPECT_DOUBLE_EQ(whole.normal[0].depth, 0.0015);
+  EXPECT_EQ(whole.normal[1].skin, ends.normal[0].skin);
+  ASSERT_EQ(ends.lateral.size(), 2U);
+  ASSERT_EQ(whole.lateral.size(), 8U);
+  for (std::size_t i = 0; i < 8; ++i) {
+    EXPECT_EQ(whole.lateral[i].direction, ends.lateral[i / 4].direction);
+    EXPECT_NEAR(whole.lateral[i].travel, 0.00025 * static_cast<double>(i % 4 + 1), 1e-12);
+  }
+  EXPECT_EQ(whole.lateral[3].skin, ends.lateral[0].skin);
+  EXPECT_EQ(whole.lateral[7].skin, ends.lateral[1].skin);
+}
+
 /// Wider than broad, so that the directions differ.
 Body lopsided_block() {
   return test::make_block(test::graded(0.03, 0.005, 0.0025, 1.5),

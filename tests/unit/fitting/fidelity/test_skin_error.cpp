@@ -28,7 +28,10 @@ class SkinError : public testing::Test {
   SiteFields direct(std::int32_t point, float scale) const {
     const SkinMesh skin = skin_mesh(plate_.body);
     const Vec3& c = points_[static_cast<std::size_t>(point)].position;
-    SiteFields fields{point, "", {{0.002, {}}, {0.005, {}}}, {{0.005, {0, 1, 0}, 0.001, {}}}};
+    SiteFields fields{point,
+                      "",
+                      {{0.002, {}}, {0.005, {}}},
+                      {{0.005, kAlong, kHeld, {}}, {0.005, kAlong, kBeyond, {}}}};
     for (const Vec3& x : skin.positions)
       for (std::size_t i = 0; i < 3; ++i) {
         const auto at = [&](double z, const Vec3& q) {
@@ -36,17 +39,42 @@ class SkinError : public testing::Test {
         };
         fields.normal[0].skin.push_back(at(0.002, {}));
         fields.normal[1].skin.push_back(at(0.005, {}));
-        fields.lateral[0].skin.push_back(at(0.005, {0, 0.001, 0}) - at(0.005, {}));
+        for (LateralField& field : fields.lateral)
+          field.skin.push_back(at(0.005, field.travel * kAlong) - at(0.005, {}));
       }
     return fields;
   }
 
-  std::vector<SkinErrorRow> measured(const std::vector<SiteFields>& fields) const {
-    const RenderedBody body(folder_ / "library.h5");
-    const RenderedSkin skin(body, folder_ / "deformation.pdef");
-    return measure_skin(body, skin, points_, fields, 0.005);
+  /// A press by 1 N, and as much aside for each millimetre.
+  static SiteCurves forces() {
+    CurvePath path;
+    path.kind = PathKind::Lateral;
+    path.lateral_depth = 0.005;
+    path.direction = kAlong;
+    for (const double travel : {0.0, kHeld, kBeyond}) {
+      CurveSample sample;
+      sample.displacement = travel;
+      sample.force = fitting::kDown + 1e3 * travel * kAlong;
+      path.samples.push_back(sample);
+    }
+    SiteCurves curves;
+    curves.paths = {path};
+    return curves;
   }
 
+  std::vector<SkinErrorRow> measured(const std::vector<SiteFields>& fields,
+                                     double friction = 0.3) const {
+    const RenderedBody body(folder_ / "library.h5");
+    const RenderedSkin skin(body, folder_ / "deformation.pdef");
+    std::vector<DirectSkin> direct;
+    direct.reserve(fields.size());
+    for (const SiteFields& of : fields) direct.push_back({curves_, of});
+    return measure_skin(body, skin, points_, direct, {0.005, friction});
+  }
+
+  static constexpr Vec3 kAlong{0, 1, 0};
+  static constexpr double kHeld = 2e-4, kBeyond = 1e-3;  // m
+  const SiteCurves curves_ = forces();
   samples::TemporaryFolder folder_;
   fitting::PressedPlate plate_;
   std::vector<HoldOutPoint> points_;
@@ -54,9 +82,10 @@ class SkinError : public testing::Test {
 
 TEST_F(SkinError, IsSmallWhereTheSkinIsRight) {
   const auto rows = measured({direct(0, 1), direct(1, 1)});
-  ASSERT_EQ(rows.size(), 4U);
+  ASSERT_EQ(rows.size(), 6U);
   EXPECT_EQ(rows[0].states, 4U);
   EXPECT_EQ(rows[2].states, 2U);
+  EXPECT_EQ(rows[4].states, 2U);
   for (const SkinErrorRow& row : rows) EXPECT_LT(row.worst, 0.015) << row.what;
   EXPECT_GT(rows[0].p95, rows[1].p95);  // most of the plate does not move
 }
@@ -67,6 +96,24 @@ TEST_F(SkinError, IsThatOfAWrongDirectField) {
   EXPECT_NEAR(rows[0].worst, 0.1, 0.015);
   EXPECT_EQ(rows[0].worst_point, 1U);
   EXPECT_EQ(rows[3].worst_point, 1U);
+  EXPECT_EQ(rows[5].worst_point, 1U);
+}
+
+TEST_F(SkinError, DividesDragsByTheFrictionCoefficient) {
+  const auto held = measured({direct(0, 1)}, 1.1);
+  ASSERT_EQ(held.size(), 4U);
+  EXPECT_EQ(held[2].what, "lateral within friction, within 3 tool radii");
+  EXPECT_EQ(held[2].states, 2U);
+  const auto beyond = measured({direct(0, 1)}, 0.1);
+  ASSERT_EQ(beyond.size(), 4U);
+  EXPECT_EQ(beyond[2].what, "lateral beyond friction, within 3 tool radii");
+  EXPECT_EQ(beyond[2].states, 2U);
+}
+
+TEST_F(SkinError, OfAStateWithoutAForceIsRefused) {
+  SiteFields fields = direct(0, 1);
+  fields.lateral[0].travel = 3e-4;
+  EXPECT_THROW(measured({fields}), Error);
 }
 
 TEST_F(SkinError, OfFieldsOfAnotherBodyIsRefused) {
