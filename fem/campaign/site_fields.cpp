@@ -62,8 +62,8 @@ void FieldRecorder::keep_lateral(LateralField field) {
   if (start == lateral_starts_.end()) return;
   for (std::size_t i = 0; i < field.skin.size(); ++i) field.skin[i] -= start->second[i];
   auto& kept = fields_.lateral;
-  const bool goes_on = !kept.empty() && kept.back().depth == field.depth &&
-                       kept.back().direction == field.direction;
+  const bool goes_on =
+      !kept.empty() && kept.back().depth == field.depth && kept.back().direction == field.direction;
   if (goes_on && !whole_lateral_paths_)
     kept.back() = std::move(field);
   else
