@@ -8,12 +8,13 @@
 
 namespace palpate::runtime {
 
-/// A contact point, the responses there and its normal. Valid while the response lives.
+/// A contact point, the responses there and its normal: a view, valid while these live.
 struct ContactPlace {
   const SurfacePoint& point;
   const InterpolatedResponse& response;
-  Vec3 normal;
-  Vec3 weights;  ///< of the three lateral responses: n_l, or n_l w_l of the grip when coupled
+  const Vec3& normal;
+  const Vec3&
+      weights;  ///< of the three lateral responses: n_l, or n_l w_l of the grip when coupled
 };
 
 }  // namespace palpate::runtime

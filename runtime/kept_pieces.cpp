@@ -83,7 +83,9 @@ ReachedForces KeptPieces<kPairs>::reach_elsewhere(std::size_t p, Pair force) noe
   const Pair root = roots(larger(on.square(rise), Pair{}));
   const Pair rising = 2.0 * rise / larger(q.slope + root, Pair{});  // infinite on a plateau
   const Pair x = smaller(rise > Pair{} ? rising : Pair{}, on.to - on.from);
-  return q.after(x, on.from + x).where(force > Pair{});
+  ReachedForces reached = q.after(x, on.from + x);
+  reached.energy = x < both(kInfinity) ? reached.energy : both(-kInfinity);
+  return reached.where(force > Pair{});
 }
 
 /// Also where a deflection is not above 0, or a piece does not contain it.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 
@@ -17,16 +18,14 @@ namespace palpate::runtime {
 struct ReachedForces {
   Pair deflection{};  ///< m; infinity: the response never reaches the force
   Pair force{};       ///< N
-  Pair energy{};      ///< J
+  Pair energy{};      ///< J; minus infinity where the force is not reached
 
   /// All 0 elsewhere.
   ReachedForces where(const Mask& presses) const noexcept {
     return {presses ? deflection : Pair{}, presses ? force : Pair{}, presses ? energy : Pair{}};
   }
   /// F d - E, J: the conjugate energies of these forces; infinity where they are not reached.
-  Pair conjugate(const Pair& of_forces) const noexcept {
-    return deflection < both(kInfinity) ? of_forces * deflection - energy : both(kInfinity);
-  }
+  Pair conjugate(const Pair& of_forces) const noexcept { return of_forces * deflection - energy; }
 };
 
 /// g(z) or h(rho).
@@ -49,13 +48,9 @@ class KeptPieces {
 
   /// The response of what follows, with weights of its own for h.
   void keep_for(const InterpolatedResponse& response, const Vec3& lateral) noexcept {
-    const Vec3& first = first_ == ResponseOf::Depth ? response.natural() : lateral;
-    const Vec3& other = other_ == ResponseOf::Depth ? response.natural() : lateral;
-    const std::array<Pair, 3> weights{Pair{first[0], other[0]}, Pair{first[1], other[1]},
-                                      Pair{first[2], other[2]}};
-    const bool same_weights = all(equal(weights[0], weights_[0]) & equal(weights[1], weights_[1]) &
-                                  equal(weights[2], weights_[2]));
-    if (!same_weights || !is_of(response.nodes())) begin(response.nodes(), weights);
+    const bool same = is_of(response.nodes());
+    if (!(same & same_bits(natural_, response.natural()) & same_bits(lateral_, lateral)))
+      begin(response, lateral, same);
   }
   void keep_for(const InterpolatedResponse& response) noexcept {
     keep_for(response, response.natural());
@@ -114,8 +109,18 @@ class KeptPieces {
     }
   };
 
+  /// Without branches: a step asks half a dozen times.
   bool is_of(const std::array<const NodeCurves*, 3>& these) const noexcept {
-    return nodes_[0] == these[0] && nodes_[1] == these[1] && nodes_[2] == these[2];
+    const auto differ = [&](std::size_t l) {
+      return std::bit_cast<std::uintptr_t>(nodes_[l]) ^ std::bit_cast<std::uintptr_t>(these[l]);
+    };
+    return (differ(0) | differ(1) | differ(2)) == 0;
+  }
+  static bool same_bits(const Vec3& a, const Vec3& b) noexcept {
+    const auto differ = [&](std::size_t l) {
+      return std::bit_cast<std::uint64_t>(a[l]) ^ std::bit_cast<std::uint64_t>(b[l]);
+    };
+    return (differ(0) | differ(1) | differ(2)) == 0;
   }
   Pair mix(const std::array<Start, 3>& nodes, Pair Start::*of) const noexcept {
     return weights_[0] * (nodes[0].*of) + weights_[1] * (nodes[1].*of) +
@@ -129,10 +134,15 @@ class KeptPieces {
     on.end_force = length < both(kInfinity) ? end : both(kInfinity);
   }
 
-  void begin(const std::array<const NodeCurves*, 3>& nodes,
-             const std::array<Pair, 3>& weights) noexcept {
-    weights_ = weights;
-    if (!is_of(nodes)) find_all(nodes);
+  /// Not inlined, so that keep_for() is.
+  [[gnu::noinline]] void begin(const InterpolatedResponse& response, const Vec3& lateral,
+                               bool same_nodes) noexcept {
+    natural_ = response.natural();
+    lateral_ = lateral;
+    const Vec3& first = first_ == ResponseOf::Depth ? natural_ : lateral_;
+    const Vec3& other = other_ == ResponseOf::Depth ? natural_ : lateral_;
+    for (std::size_t l = 0; l < 3; ++l) weights_[l] = Pair{first[l], other[l]};
+    if (!same_nodes) find_all(response.nodes());
     for (std::size_t p = 0; p < pairs(); ++p) merge(pieces_[p]);
   }
   void find_all(const std::array<const NodeCurves*, 3>& nodes) noexcept;
@@ -148,7 +158,8 @@ class KeptPieces {
   std::size_t lanes_;
   ResponseOf first_, other_;                  ///< of the first lane and of the others
   std::array<const NodeCurves*, 3> nodes_{};  ///< owners of the pieces; null: none
-  std::array<Pair, 3> weights_{};             ///< of what is merged: first lane, other lanes
+  Vec3 natural_{}, lateral_{};                ///< weights of what is merged, of g and h
+  std::array<Pair, 3> weights_{};             ///< the same: first lane, other lanes
   std::array<PiecePair, kPairs> pieces_;
 };
 

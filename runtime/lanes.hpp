@@ -38,13 +38,6 @@ inline Mask at_most(const Pair& a, const Pair& b) noexcept {
   return a <= b;
 #endif
 }
-inline Mask equal(const Pair& a, const Pair& b) noexcept {
-#ifdef __SSE2__
-  return reinterpret_cast<Mask>(_mm_cmpeq_pd(a, b));
-#else
-  return a == b;
-#endif
-}
 inline bool all(const Mask& m) noexcept {
 #ifdef __SSE2__
   return _mm_movemask_pd(reinterpret_cast<__m128d>(m)) == 3;  // two instructions

@@ -44,7 +44,7 @@ LateralMemory LateralBranches::move(const LateralPlace& place, double factor) co
   Pair stored{};
   const Branches& branches = branches_[here_];
   Branches& moved = branches_[slid_];
-  pieces_.keep_for(*place.response, place.weights);
+  pieces_.keep_for(place.response, place.weights);
   for (std::size_t p = 0; p < pieces_.pairs(); ++p) {
     const BranchPair& from = branches[p];
     BranchPair& there = moved[p];
@@ -53,8 +53,8 @@ LateralMemory LateralBranches::move(const LateralPlace& place, double factor) co
     there.longest = there.at.deflection;
     const Pair scale = from.at.force > Pair{} ? there.at.force / from.at.force : Pair{};
     for (std::size_t k = 0; k < 3; ++k) there.force[k] = scale * (from.force[k] - along * axis[k]);
-    sums.add(place.fractions->pair[p], there.force);
-    stored += place.fractions->pair[p] * there.at.conjugate(there.at.force);
+    sums.add(place.fractions.pair[p], there.force);
+    stored += place.fractions.pair[p] * there.at.conjugate(there.at.force);
   }
   return sums.memory(stored[0] + stored[1]);
 }
@@ -66,15 +66,15 @@ LateralMemory LateralBranches::hold(const LateralPlace& place, const Branches& f
   LateralSums sums;
   Pair stored{};
   Branches& held = branches_[held_];
-  pieces_.keep_for(*place.response, place.weights);
+  pieces_.keep_for(place.response, place.weights);
   for (std::size_t p = 0; p < pieces_.pairs(); ++p) {
     BranchPair& there = held[p];
     for (std::size_t k = 0; k < 3; ++k) there.force[k] = scale * from[p].force[k];
     there.longest = from[p].longest;
     reach(p, there);
     there.longest = there.at.deflection;
-    sums.add(place.fractions->pair[p], there.force);
-    stored += place.fractions->pair[p] * there.at.conjugate(there.at.force);
+    sums.add(place.fractions.pair[p], there.force);
+    stored += place.fractions.pair[p] * there.at.conjugate(there.at.force);
   }
   return sums.memory(stored[0] + stored[1]);
 }
@@ -143,9 +143,9 @@ void LateralBranches::repeat(const LateralPlace& place, const LateralMemory& cha
                              const Vec3& slid) noexcept {
   const bool moves = changed.slide != 0;
   if (moves) {
-    LateralPlace end = place;
-    if (changed.grip != 0) end.weights = slid;
-    move(end, changed.carried());
+    const bool grows = changed.grip != 0;
+    move({place.response, place.fractions, place.normal, grows ? slid : place.weights},
+         changed.carried());
   }
   if (changed.grip != 0) hold(place, branches_[moves ? slid_ : here_], changed.held);
 }
@@ -165,7 +165,7 @@ void LateralBranches::pass(const LateralPlace& place, const Vec3& target, double
       force[k] = target[k] + decay.pair[p] * (force[k] - target[k]);
     // The force is between two that were reached, so that its deflection is no longer than theirs.
     branch.longest = larger(branch.longest, both(lateral));
-    sums.add(place.fractions->pair[p], force);
+    sums.add(place.fractions.pair[p], force);
   }
   now_ = sums.memory(0);
 }
@@ -173,11 +173,11 @@ void LateralBranches::pass(const LateralPlace& place, const Vec3& target, double
 double LateralBranches::find_stored(const LateralPlace& place) noexcept {
   if (!now_.any) return 0;
   Pair stored{};
-  pieces_.keep_for(*place.response, place.weights);
+  pieces_.keep_for(place.response, place.weights);
   for (std::size_t p = 0; p < pieces_.pairs(); ++p) {
     BranchPair& branch = branches_[here_][p];
     reach(p, branch);
-    stored += place.fractions->pair[p] * branch.at.conjugate(branch.at.force);
+    stored += place.fractions.pair[p] * branch.at.conjugate(branch.at.force);
   }
   return stored[0] + stored[1];
 }

@@ -15,12 +15,13 @@
 
 namespace palpate::runtime {
 
-/// Where lateral memories come to lie: a response, its fractions g_i, and the normal there.
+/// Where lateral memories come to lie: a response, its fractions g_i, and the normal there. A view.
 struct LateralPlace {
-  const InterpolatedResponse* response;
-  const Lanes* fractions;
-  Vec3 normal;
-  Vec3 weights;  ///< of the three lateral responses: n_l, or n_l w_l of the grip when coupled
+  const InterpolatedResponse& response;
+  const Lanes& fractions;
+  const Vec3& normal;
+  const Vec3&
+      weights;  ///< of the three lateral responses: n_l, or n_l w_l of the grip when coupled
 };
 
 /// One lateral deflection p_i (m) for each relaxation time, tangential to the surface: M_i =

@@ -22,18 +22,11 @@ void LocalModel::replace_memory(const TissueMemory& memory, const Deflection& d,
   at.friction_normal_force = at.relaxed.force;
   at.force = at.force + change * n_;
   at.energy += at.relaxed.energy - before.energy;
-  if (memory.lateral.any || memory_->lateral.any)
-    relax_laterally(memory.lateral, memory_->lateral, d, at);
+  const LateralMemory &lateral = memory.lateral, &was = memory_->lateral;
+  if (lateral.any || was.any)
+    relax_laterally(lateral.relaxed(), lateral.relaxed() - was.relaxed(),
+                    lateral.stored() - was.stored(), d, at);
   set_memory(memory);
-}
-
-/// Puts a lateral memory in the place of another in a response.
-void LocalModel::relax_laterally(const LateralMemory& memory, const LateralMemory& before,
-                                 const Deflection& d, LocalResponse& r) const noexcept {
-  const Vec3 change = memory.relaxed() - before.relaxed();
-  r.lateral_force = norm(r.instant_lateral_force * d.tangent - memory.relaxed());
-  r.energy += memory.stored() - before.stored() - d.lateral * dot(change, d.tangent);
-  r.force = r.force - leaning(change);
 }
 
 /// The force f that is felt becomes limit f/|f|, and q the deflection at which grad H is M plus

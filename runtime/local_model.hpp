@@ -269,7 +269,8 @@ class LocalModel {
     r.relaxed = relaxed_response(memory_->normal, {d.depth, at.force[0], at.energy[0]});
     take({r.relaxed.force, at.force[1], r.relaxed.energy + at.energy[1]}, d, r);
     r.instant_lateral_force = at.force[1];
-    if (memory_->lateral.any) relax_laterally(memory_->lateral, {}, d, r);
+    const LateralMemory& lateral = memory_->lateral;
+    if (lateral.any) relax_laterally(lateral.relaxed(), lateral.relaxed(), lateral.stored(), d, r);
     r.friction_normal_force = r.normal_force;
   }
   /// Forces along n and t, N, and energy, J.
@@ -289,8 +290,13 @@ class LocalModel {
   void grow_grip(const Vec3& wide, Deflection& d, LocalResponse& at, ToolPieces& pieces,
                  const Relaxation& memories) noexcept;
   double lateral_reached(const LocalResponse& at, double force, TipPieces& pieces) const noexcept;
-  void relax_laterally(const LateralMemory& memory, const LateralMemory& before,
-                       const Deflection& d, LocalResponse& r) const noexcept;
+  /// Puts M (N) into a response, from which it differs by `change` (N), and K by `stored` (J).
+  void relax_laterally(const Vec3& relaxed, const Vec3& change, double stored, const Deflection& d,
+                       LocalResponse& r) const noexcept {
+    r.lateral_force = norm(r.instant_lateral_force * d.tangent - relaxed);
+    r.energy += stored - d.lateral * dot(change, d.tangent);
+    r.force = r.force - leaning(change);
+  }
   LateralSlip relaxed_slip_within(const Deflection& d, const LocalResponse& at, double limit,
                                   TipPieces& pieces) const noexcept;
   /// A copy that an optional makes only where there is one: a step copies its model several times,

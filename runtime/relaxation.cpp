@@ -31,17 +31,18 @@ double Relaxation::sum_of_forces(const Lanes& fractions, double factor) const no
 /// of the branches is that of the skin.
 NormalMemory Relaxation::sums(const InterpolatedResponse& response, const Lanes& fractions,
                               double factor, double relaxed) const noexcept {
-  double stored = 0, skin = 0;
-  pieces_.keep_for(response);
-  for (std::size_t p = 0; p < pieces_.pairs(); ++p) {
-    Pair force = factor * memory_.pair[p];
-    const bool with_skin = p == times_ / 2;
-    if (with_skin) force = times_ % 2 == 1 ? Pair{force[0], relaxed} : both(relaxed);
+  double stored = 0;
+  const auto conjugate_of = [&](std::size_t p, const Pair& force) {
     const Pair conjugate = pieces_.reach(p, kReachable * force).conjugate(force);
     const Pair& fraction = fractions.pair[p];
     stored = plus(stored, fraction > Pair{} ? fraction * conjugate : Pair{});
-    if (with_skin) skin = times_ % 2 == 1 ? conjugate[1] : conjugate[0];
-  }
+    return conjugate;
+  };
+  pieces_.keep_for(response);
+  const std::size_t last = times_ / 2;
+  for (std::size_t p = 0; p < last; ++p) conjugate_of(p, factor * memory_.pair[p]);
+  const double beside_skin = times_ % 2 == 1 ? factor * memory_[times_ - 1] : relaxed;
+  const double skin = conjugate_of(last, Pair{beside_skin, relaxed})[1];
   const double locked = stored < kInfinity ? std::max(stored - skin, 0.0) : kInfinity;
   return {Pair{relaxed, factor}, Pair{stored, locked}};
 }
@@ -74,7 +75,7 @@ TissueMemory Relaxation::carried_to(const ContactPlace& place, double distance,
   TissueMemory there;
   if (shears)
     there.lateral =
-        lateral_.carried_to({&place.response, &fractions, place.normal, place.weights}, factor);
+        lateral_.carried_to({place.response, fractions, place.normal, place.weights}, factor);
   there.normal = normal_carried_to(place.response, fractions, factor);
   return there;
 }
@@ -82,8 +83,8 @@ TissueMemory Relaxation::carried_to(const ContactPlace& place, double distance,
 LateralMemory Relaxation::held_at(const ContactPlace& place,
                                   const LateralMemory& memory) const noexcept {
   const bool here = surface_->relaxes_alike() || memory.slide == 0;
-  return lateral_.held_at(
-      {&place.response, here ? &fractions_ : &there_, place.normal, place.weights}, memory);
+  return lateral_.held_at({place.response, here ? fractions_ : there_, place.normal, place.weights},
+                          memory);
 }
 
 void Relaxation::carry(const ContactPlace& place, const TissueMemory& changed,

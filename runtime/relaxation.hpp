@@ -78,7 +78,7 @@ class Relaxation {
                     double relaxed) const noexcept;
   void keep_decay(double dt) noexcept;
   void find() noexcept;
-  LateralPlace here() const noexcept { return {&*response_, &fractions_, normal_, weights_}; }
+  LateralPlace here() const noexcept { return {*response_, fractions_, normal_, weights_}; }
 
   const Surface* surface_;
   std::size_t times_;                             ///< how many relaxation times

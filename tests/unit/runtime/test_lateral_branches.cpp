@@ -406,8 +406,8 @@ TEST(LateralBranches, TurnWithTheNormalAndKeepTheirEnergy) {
   const Vec3 down{0, 0, -1}, aside{0.6, 0, -0.8};
   runtime::LateralBranches branches(2);
   const Vec3& weights = response.natural();
-  const runtime::LateralPlace here{&response, &fractions, down, weights};
-  const runtime::LateralPlace turned{&response, &fractions, aside, weights};
+  const runtime::LateralPlace here{response, fractions, down, weights};
+  const runtime::LateralPlace turned{response, fractions, aside, weights};
   branches.pass(here, {0.1, 0.05, 0}, 2e-3, decay);
   branches.settle(branches.find_stored(here));
   const runtime::LateralMemory before = branches.now();
@@ -419,7 +419,7 @@ TEST(LateralBranches, TurnWithTheNormalAndKeepTheirEnergy) {
   EXPECT_NEAR(after.stored(), before.stored(), 1e-18);
   // The axis of the turn is y: the part along it stays.
   EXPECT_NEAR(after.relaxed()[1], before.relaxed()[1], 1e-16);
-  EXPECT_FALSE(branches.carried_to({&response, &fractions, -aside, weights}, 1).any);
+  EXPECT_FALSE(branches.carried_to({response, fractions, -aside, weights}, 1).any);
 }
 
 TEST(LateralBranches, AChangeThatIsChosenAfterOthersWereConsideredIsTheSame) {
@@ -432,12 +432,12 @@ TEST(LateralBranches, AChangeThatIsChosenAfterOthersWereConsideredIsTheSame) {
     fractions.set(i, 0.25);
     decay.set(i, i == 0 ? 0.1 : 0.7);
   }
-  const Vec3 down{0, 0, -1};
+  const Vec3 down{0, 0, -1}, aside{0.6, 0, -0.8}, across{0, 0.6, -0.8};
   const Vec3 narrow = 0.5 * response.natural(), wide = 0.8 * response.natural();
-  const runtime::LateralPlace here{&response, &fractions, down, narrow};
-  const runtime::LateralPlace slid{&response, &fractions, {0.6, 0, -0.8}, narrow};
-  const runtime::LateralPlace grown{&response, &fractions, {0.6, 0, -0.8}, wide};
-  const runtime::LateralPlace elsewhere{&other, &fractions, {0, 0.6, -0.8}, other.natural()};
+  const runtime::LateralPlace here{response, fractions, down, narrow};
+  const runtime::LateralPlace slid{response, fractions, aside, narrow};
+  const runtime::LateralPlace grown{response, fractions, aside, wide};
+  const runtime::LateralPlace elsewhere{other, fractions, across, other.natural()};
   const auto carried = [&](bool considers_others, double held, bool grows) {
     runtime::LateralBranches branches(2);
     branches.pass(here, {0.1, 0.05, 0}, 4e-3, decay);
