@@ -48,9 +48,10 @@ class KeptPieces {
 
   /// The response of what follows, with weights of its own for h.
   void keep_for(const InterpolatedResponse& response, const Vec3& lateral) noexcept {
-    const bool same = is_of(response.nodes());
-    if (!(same & same_bits(natural_, response.natural()) & same_bits(lateral_, lateral)))
-      begin(response, lateral, same);
+    const std::uintptr_t other_nodes = bits_apart(nodes_, response.nodes());
+    const std::uint64_t other_weights =
+        bits_apart(natural_, response.natural()) | bits_apart(lateral_, lateral);
+    if ((other_nodes | other_weights) != 0) begin(response, lateral, other_nodes != 0);
   }
   void keep_for(const InterpolatedResponse& response) noexcept {
     keep_for(response, response.natural());
@@ -109,18 +110,19 @@ class KeptPieces {
     }
   };
 
-  /// Without branches: a step asks half a dozen times.
-  bool is_of(const std::array<const NodeCurves*, 3>& these) const noexcept {
-    const auto differ = [&](std::size_t l) {
-      return std::bit_cast<std::uintptr_t>(nodes_[l]) ^ std::bit_cast<std::uintptr_t>(these[l]);
-    };
-    return (differ(0) | differ(1) | differ(2)) == 0;
+  /// Zero where the bits are the same. Without branches: a step asks half a dozen times.
+  static std::uint64_t bits_apart(const Vec3& a, const Vec3& b) noexcept {
+    std::uint64_t apart = 0;
+    for (std::size_t l = 0; l < 3; ++l)
+      apart |= std::bit_cast<std::uint64_t>(a[l]) ^ std::bit_cast<std::uint64_t>(b[l]);
+    return apart;
   }
-  static bool same_bits(const Vec3& a, const Vec3& b) noexcept {
-    const auto differ = [&](std::size_t l) {
-      return std::bit_cast<std::uint64_t>(a[l]) ^ std::bit_cast<std::uint64_t>(b[l]);
-    };
-    return (differ(0) | differ(1) | differ(2)) == 0;
+  static std::uintptr_t bits_apart(const std::array<const NodeCurves*, 3>& a,
+                                   const std::array<const NodeCurves*, 3>& b) noexcept {
+    std::uintptr_t apart = 0;
+    for (std::size_t l = 0; l < 3; ++l)
+      apart |= std::bit_cast<std::uintptr_t>(a[l]) ^ std::bit_cast<std::uintptr_t>(b[l]);
+    return apart;
   }
   Pair mix(const std::array<Start, 3>& nodes, Pair Start::*of) const noexcept {
     return weights_[0] * (nodes[0].*of) + weights_[1] * (nodes[1].*of) +
@@ -136,13 +138,13 @@ class KeptPieces {
 
   /// Not inlined, so that keep_for() is.
   [[gnu::noinline]] void begin(const InterpolatedResponse& response, const Vec3& lateral,
-                               bool same_nodes) noexcept {
+                               bool other_nodes) noexcept {
     natural_ = response.natural();
     lateral_ = lateral;
     const Vec3& first = first_ == ResponseOf::Depth ? natural_ : lateral_;
     const Vec3& other = other_ == ResponseOf::Depth ? natural_ : lateral_;
     for (std::size_t l = 0; l < 3; ++l) weights_[l] = Pair{first[l], other[l]};
-    if (!same_nodes) find_all(response.nodes());
+    if (other_nodes) find_all(response.nodes());
     for (std::size_t p = 0; p < pairs(); ++p) merge(pieces_[p]);
   }
   void find_all(const std::array<const NodeCurves*, 3>& nodes) noexcept;

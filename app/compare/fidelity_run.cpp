@@ -78,7 +78,7 @@ void require_same_surface(const Library& library, const Body& body, const fs::pa
 
 /// Digest of everything that the direct solutions depend on.
 std::string direct_key(const Workspace& space, const fem::CampaignSettings& settings) {
-  std::string text = fmt::format("fidelity of whole paths\n{}\n{}\n{}\n{}\n",
+  std::string text = fmt::format("fidelity within and beyond friction\n{}\n{}\n{}\n{}\n",
                                  sha256_of_file(space.body()), stage_case(space, Stage::Precompute),
                                  PALPATE_VERSION, settings.indentation.lateral_increments);
   if (settings.indentation.divide_once_more) text += "on a finer mesh\n";
@@ -99,7 +99,7 @@ Curves solve_direct(const Workspace& space, const Body& body, fem::CampaignSetti
   settings.known = journal.found();
   settings.finished = [&](const SiteCurves& site) { journal.append(site); };
   if (space.c.deformation.depths > 0) keep_fields_in(direct_fields(space), kDirectFields, settings);
-  settings.whole_lateral_fields = true;
+  settings.field_friction = space.c.certify.friction;
   ProgressDisplay display("direct", console().out);
   settings.progress = [&](const fem::CampaignProgress& p) {
     display.show({p.done, p.failed, p.running, p.total, p.known, p.sites, false});
@@ -122,12 +122,9 @@ std::vector<fidelity::SkinErrorRow> skin_rows(const Workspace& space, const fs::
                                               const Curves& direct) {
   const fs::path file = library.parent_path() / space.deformation().filename();
   if (space.c.deformation.depths == 0 || !fs::exists(file)) return {};
-  std::vector<fidelity::DirectSkin> skins;
-  for (const SiteCurves& site : direct.sites)
-    if (site.status != SiteStatus::Failed)
-      skins.push_back({site, fields_of(direct_fields(space), site)});
-  return fidelity::measure_skin(rendered, {rendered, file}, points, skins,
-                                {direct.tool.radius, space.c.certify.friction});
+  const auto fields = [&](const SiteCurves& site) { return fields_of(direct_fields(space), site); };
+  return fidelity::measure_skin(rendered, {rendered, file}, points, direct, fields,
+                                space.c.certify.friction);
 }
 
 /// Depths are measured from the skin. Its distance from the flat triangles is an error of geometry,

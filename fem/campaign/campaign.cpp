@@ -115,7 +115,7 @@ class OpenSites {
     std::optional<FieldRecorder> recorder;
     if (keeps_fields()) {
       recorder.emplace(solver, context_, skin_.node, settings_.field_depths,
-                       settings_.whole_lateral_fields);
+                       settings_.field_friction);
       solver.also_across(context_.indentation.azimuths.size() == 1);
     }
     SiteCurves site = solver.solve(result.vertex);

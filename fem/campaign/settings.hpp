@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -91,8 +92,9 @@ struct CampaignSettings {
   /// is not kept.
   std::function<void(SiteFields)> fields;
   int field_depths = 0;  ///< number of depths that are kept, see fem::field_depths
-  /// Keeps every increment of the lateral paths, and the press at their depths; else their ends.
-  bool whole_lateral_fields = false;
+  /// Keeps of the lateral paths also the states that this friction coefficient holds, and the press
+  /// at their depths; none: the ends of the paths alone.
+  std::optional<double> field_friction;
   std::function<void(const CampaignProgress&)> progress;
   /// Called at the start and after every increment of every site, from one thread at a time; may be
   /// null.

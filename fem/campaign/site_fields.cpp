@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "format/friction_cone.hpp"
 #include "format/to_index.hpp"
 
 namespace palpate::fem {
@@ -34,28 +35,31 @@ std::vector<double> field_depths(const IndentationSettings& settings, int count)
 
 FieldRecorder::FieldRecorder(SiteSolver& solver, const CampaignContext& context,
                              const std::vector<std::int32_t>& nodes, int depths,
-                             bool whole_lateral_paths)
+                             std::optional<double> friction)
     : context_(context),
       nodes_(nodes),
       depths_(field_depths(context.indentation, depths)),
-      whole_lateral_paths_(whole_lateral_paths) {
+      friction_(friction) {
   solver.observe([this](const ToolContact&, const Displacement& u, const CurveSample& sample) {
     keep_press(sample.displacement, u);
   });
-  solver.observe_lateral([this](const LateralPlan& plan, const ToolContact&, const Displacement& u,
-                                const CurveSample& sample) {
-    keep_lateral({plan.lateral_depth, plan.direction, sample.displacement, since_rest(u)});
+  solver.observe_lateral([this](const LateralPlan& plan, const ToolContact& contact,
+                                const Displacement& u, const CurveSample& sample) {
+    const Eigen::Vector3d& n = contact.tool().inward;
+    const bool is_held = friction_ && within_friction(sample.force, {n[0], n[1], n[2]}, *friction_);
+    keep_lateral({plan.lateral_depth, plan.direction, sample.displacement, since_rest(u)}, is_held);
   });
 }
 
 void FieldRecorder::keep_press(double depth, const Displacement& u) {
   const bool starts_path = among(context_.indentation.lateral_depths, depth);
   if (starts_path) lateral_starts_.insert_or_assign(depth, since_rest(u));
-  if (among(depths_, depth) || (starts_path && whole_lateral_paths_))
+  if (among(depths_, depth) || (starts_path && friction_))
     fields_.normal.push_back({depth, since_rest(u)});
 }
 
-void FieldRecorder::keep_lateral(LateralField field) {
+/// A state beyond friction gives way to the next one of its path.
+void FieldRecorder::keep_lateral(LateralField field, bool is_held) {
   const auto start =
       std::find_if(lateral_starts_.begin(), lateral_starts_.end(),
                    [&](const auto& entry) { return same_depth(entry.first, field.depth); });
@@ -64,10 +68,11 @@ void FieldRecorder::keep_lateral(LateralField field) {
   auto& kept = fields_.lateral;
   const bool goes_on =
       !kept.empty() && kept.back().depth == field.depth && kept.back().direction == field.direction;
-  if (goes_on && !whole_lateral_paths_)
+  if (goes_on && !last_is_held_)
     kept.back() = std::move(field);
   else
     kept.push_back(std::move(field));
+  last_is_held_ = is_held;
 }
 
 SiteFields FieldRecorder::take(std::int32_t vertex) {

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "fem/campaign/indentation.hpp"
@@ -20,11 +21,10 @@ std::vector<double> field_depths(const IndentationSettings& settings, int count)
 class FieldRecorder {
  public:
   /// `solver` and `context` must outlive the recorder, and the recorder the solutions.
-  /// `whole_lateral_paths`: keeps every increment of the lateral paths, not the last alone, and the
-  /// press at each of their depths.
+  /// `friction`: see CampaignSettings::field_friction.
   FieldRecorder(SiteSolver& solver, const CampaignContext& context,
                 const std::vector<std::int32_t>& nodes, int depths,
-                bool whole_lateral_paths = false);
+                std::optional<double> friction = std::nullopt);
 
   /// The fields of the site solved last, without the digest of its curves.
   SiteFields take(std::int32_t vertex);
@@ -32,12 +32,13 @@ class FieldRecorder {
  private:
   std::vector<float> since_rest(const Displacement& u) const;
   void keep_press(double depth, const Displacement& u);
-  void keep_lateral(LateralField field);
+  void keep_lateral(LateralField field, bool is_held);
 
   const CampaignContext& context_;
   const std::vector<std::int32_t>& nodes_;
   std::vector<double> depths_;
-  bool whole_lateral_paths_;
+  std::optional<double> friction_;
+  bool last_is_held_ = false;  ///< by friction: the lateral field that was kept last
   std::map<double, std::vector<float>> lateral_starts_;  ///< by depth
   SiteFields fields_;
 };

@@ -11,6 +11,7 @@
 
 #include "fitting/measurement/compare/compare.hpp"
 #include "fitting/measurement/nearest_rank.hpp"
+#include "format/friction_cone.hpp"
 
 namespace palpate::fidelity {
 namespace {

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "format/library.hpp"
-#include "format/vec3.hpp"
 
 namespace palpate::fidelity {
 
@@ -26,11 +25,5 @@ struct HoldOutPoint {
 /// responses.
 std::vector<HoldOutPoint> draw_points(const Library& library, int off_node, int at_node,
                                       std::uint32_t seed);
-
-/// Is a force of the tool on the body in the cone of friction around `inward`?
-inline bool within_friction(const Vec3& force, const Vec3& inward, double friction) {
-  const double push = dot(force, inward);
-  return norm(force - push * inward) <= friction * push;
-}
 
 }  // namespace palpate::fidelity

@@ -8,6 +8,7 @@
 
 #include "fitting/measurement/nearest_rank.hpp"
 #include "format/error.hpp"
+#include "format/friction_cone.hpp"
 
 namespace palpate::fidelity {
 namespace {
@@ -135,20 +136,22 @@ class SkinMeasure {
 
 std::vector<SkinErrorRow> measure_skin(const RenderedBody& body, const RenderedSkin& skin,
                                        const std::vector<HoldOutPoint>& points,
-                                       const std::vector<DirectSkin>& direct,
-                                       const SkinErrorSettings& settings) {
-  const SkinMeasure measure(body, skin, settings.tool_radius);
+                                       const Curves& direct,
+                                       const std::function<SiteFields(const SiteCurves&)>& fields,
+                                       double friction) {
+  const SkinMeasure measure(body, skin, direct.tool.radius);
   NearAndAll press("press"), held("lateral within friction"), beyond("lateral beyond friction");
-  for (const DirectSkin& site : direct) {
-    const auto point = static_cast<std::size_t>(site.fields.vertex);
-    if (point >= points.size()) continue;
+  for (const SiteCurves& site : direct.sites) {
+    const auto point = static_cast<std::size_t>(site.vertex);
+    if (site.status == SiteStatus::Failed || point >= points.size()) continue;
     const HoldOutPoint& p = points[point];
+    const SiteFields of_site = fields(site);
     const auto is_held = [&](const LateralField& field) {
-      return within_friction(force_at(site.curves, field), p.inward, settings.friction);
+      return within_friction(force_at(site, field), p.inward, friction);
     };
-    measure.compare(p, point, presses(site.fields), press);
-    measure.compare(p, point, deflections(site.fields, is_held), held);
-    measure.compare(p, point, deflections(site.fields, std::not_fn(is_held)), beyond);
+    measure.compare(p, point, presses(of_site), press);
+    measure.compare(p, point, deflections(of_site, is_held), held);
+    measure.compare(p, point, deflections(of_site, std::not_fn(is_held)), beyond);
   }
   std::vector<SkinErrorRow> rows;
   for (NearAndAll* errors : {&press, &held, &beyond}) {

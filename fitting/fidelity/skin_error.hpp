@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -22,25 +23,16 @@ struct SkinErrorRow {
   std::size_t worst_point = 0;
 };
 
-/// A direct solution: its forces, and the displacement of the skin at its states.
-struct DirectSkin {
-  const SiteCurves& curves;
-  SiteFields fields;
-};
-
-struct SkinErrorSettings {
-  double tool_radius = 0;  ///< m
-  double friction = 0;     ///< which divides the states of the lateral paths
-};
-
 /// The skin pressed at the points, each state of each field: presses, and states of lateral paths
 /// within and beyond friction. The vertices within three tool radii of the contact point, and all.
-/// No rows of a kind without states. Fields without a point, by SiteFields::vertex, and lateral
-/// fields without a press to their depth are left out. @throws Error(Configuration) where a field
-/// is of another body, or has no force.
+/// No rows of a kind without states. Sites that failed or are of no point, and lateral fields
+/// without a press to their depth are left out.
+/// @param fields  of a direct site, one at a time: they are large.
+/// @throws Error(Configuration) where a field is of another body, or has no force.
 std::vector<SkinErrorRow> measure_skin(const RenderedBody& body, const RenderedSkin& skin,
                                        const std::vector<HoldOutPoint>& points,
-                                       const std::vector<DirectSkin>& direct,
-                                       const SkinErrorSettings& settings);
+                                       const Curves& direct,
+                                       const std::function<SiteFields(const SiteCurves&)>& fields,
+                                       double friction);
 
 }  // namespace palpate::fidelity

@@ -95,7 +95,7 @@ TEST(SiteFieldsOfCampaign, AreTheDisplacementsOfTheSkin) {
   }
 }
 
-TEST(SiteFieldsOfCampaign, WholeLateralPathsEndAsTheirEnds) {
+TEST(SiteFieldsOfCampaign, StatesThatFrictionHoldsAreKeptBesideTheEnds) {
   const Body body = test::make_block(test::graded(0.03, 0.005, 0.0025, 1.5),
                                      test::graded(0.03, 0.005, 0.0025, 1.5),
                                      {-0.03, -0.02, -0.012, -0.006, -0.003, 0});
@@ -108,23 +108,33 @@ TEST(SiteFieldsOfCampaign, WholeLateralPathsEndAsTheirEnds) {
   settings.fields = [&](SiteFields fields) { kept.push_back(std::move(fields)); };
   CampaignReport report;
   run_campaign(body, settings, report);
-  settings.whole_lateral_fields = true;
+  // The lateral force over that of the press at the four increments of both paths.
+  std::vector<double> ratios;
+  const Curves curves = run_campaign(body, settings, report);
+  for (const CurvePath& path : curves.sites.front().paths)
+    for (const CurveSample& sample : path.samples)
+      if (path.kind == PathKind::Lateral && sample.displacement > 0)
+        ratios.push_back(std::hypot(sample.force[0], sample.force[1]) / -sample.force[2]);
+  ASSERT_EQ(ratios.size(), 8U);
+  settings.field_friction = 0.5 * (ratios[1] + ratios[2]);  // between the second and the third
+  ASSERT_LT(ratios[5], *settings.field_friction);
+  ASSERT_GT(ratios[6], *settings.field_friction);
   run_campaign(body, settings, report);
-  ASSERT_EQ(kept.size(), 2U);
-  const SiteFields &ends = kept[0], &whole = kept[1];
+  const SiteFields &ends = kept.front(), &all = kept.back();
 
   ASSERT_EQ(ends.normal.size(), 1U);
-  ASSERT_EQ(whole.normal.size(), 2U);
-  EXPECT_DOUBLE_EQ(whole.normal[0].depth, 0.0015);
-  EXPECT_EQ(whole.normal[1].skin, ends.normal[0].skin);
+  ASSERT_EQ(all.normal.size(), 2U);
+  EXPECT_DOUBLE_EQ(all.normal[0].depth, 0.0015);
+  EXPECT_EQ(all.normal[1].skin, ends.normal[0].skin);
   ASSERT_EQ(ends.lateral.size(), 2U);
-  ASSERT_EQ(whole.lateral.size(), 8U);
-  for (std::size_t i = 0; i < 8; ++i) {
-    EXPECT_EQ(whole.lateral[i].direction, ends.lateral[i / 4].direction);
-    EXPECT_NEAR(whole.lateral[i].travel, 0.00025 * static_cast<double>(i % 4 + 1), 1e-12);
+  ASSERT_EQ(all.lateral.size(), 6U);
+  const std::vector<int> increments{1, 2, 4};
+  for (std::size_t i = 0; i < 6; ++i) {
+    EXPECT_EQ(all.lateral[i].direction, ends.lateral[i / 3].direction);
+    EXPECT_NEAR(all.lateral[i].travel, 0.00025 * increments[i % 3], 1e-12);
   }
-  EXPECT_EQ(whole.lateral[3].skin, ends.lateral[0].skin);
-  EXPECT_EQ(whole.lateral[7].skin, ends.lateral[1].skin);
+  EXPECT_EQ(all.lateral[2].skin, ends.lateral[0].skin);
+  EXPECT_EQ(all.lateral[5].skin, ends.lateral[1].skin);
 }
 
 /// Wider than broad, so that the directions differ.

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "format/error.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/unit/fitting/deformation/pressed_plate.hpp"
@@ -59,6 +61,7 @@ class SkinError : public testing::Test {
     }
     SiteCurves curves;
     curves.paths = {path};
+    curves.status = SiteStatus::Complete;
     return curves;
   }
 
@@ -66,10 +69,17 @@ class SkinError : public testing::Test {
                                      double friction = 0.3) const {
     const RenderedBody body(folder_ / "library.h5");
     const RenderedSkin skin(body, folder_ / "deformation.pdef");
-    std::vector<DirectSkin> direct;
-    direct.reserve(fields.size());
-    for (const SiteFields& of : fields) direct.push_back({curves_, of});
-    return measure_skin(body, skin, points_, direct, {0.005, friction});
+    Curves direct;
+    direct.tool.radius = 0.005;
+    for (const SiteFields& of : fields) {
+      direct.sites.push_back(curves_);
+      direct.sites.back().vertex = of.vertex;
+    }
+    const auto of_site = [&](const SiteCurves& site) {
+      return *std::find_if(fields.begin(), fields.end(),
+                           [&](const SiteFields& of) { return of.vertex == site.vertex; });
+    };
+    return measure_skin(body, skin, points_, direct, of_site, friction);
   }
 
   static constexpr Vec3 kAlong{0, 1, 0};
