@@ -47,7 +47,9 @@ class Deformation(unittest.TestCase):
         run = palpate("compare", "--fem", self.case, "--out", self.out, "--points", 3, "--nodes", 1)
         self.assertEqual(run.returncode, 0, run.stderr)
         rows = json.loads((self.out / "fidelity.json").read_text())["libraries"][0]["skin"]
-        self.assertEqual(len(rows), 4)
+        kinds = ("press", "lateral within friction", "lateral beyond friction")
+        parts = ("within 3 tool radii", "whole skin")
+        self.assertEqual([row["what"] for row in rows], [f"{kind}, {part}" for kind in kinds for part in parts])
         for row in rows:
             self.assertGreater(row["states"], 3)
             # The elements are larger than the contact: the direct skin under the tool depends on where it lies
