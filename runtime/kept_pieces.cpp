@@ -41,7 +41,7 @@ void KeptPieces<kPairs>::keep(std::size_t lane, const Knots& knots) noexcept {
 }
 
 template <std::size_t kPairs>
-void KeptPieces<kPairs>::find_all(const std::array<const NodeCurves*, 3>& nodes) noexcept {
+void KeptPieces<kPairs>::find_all(const Nodes& nodes) noexcept {
   nodes_ = nodes;
   for (std::size_t lane = 0; lane < 2 * pairs(); ++lane)
     with_knots(lane, pieces_[lane / 2].from[lane % 2],
@@ -77,11 +77,11 @@ void KeptPieces<kPairs>::find(std::size_t p, const Pair& deflection) noexcept {
 template <std::size_t kPairs>
 ReachedForces KeptPieces<kPairs>::reach_elsewhere(std::size_t p, Pair force) noexcept {
   PiecePair& on = pieces_[p];
-  const Start& q = on.merged;
+  const Merged& q = on.merged;
   if (!all(on.reaches(force))) walk(p, force);
   const Pair rise = larger(force - q.force, Pair{});
   const Pair root = roots(larger(on.square(rise), Pair{}));
-  const Pair rising = 2.0 * rise / larger(q.slope + root, Pair{});  // infinite on a plateau
+  const Pair rising = rise / larger(q.half_slope + root, Pair{});  // infinite on a plateau
   const Pair x = smaller(rise > Pair{} ? rising : Pair{}, on.to - on.from);
   ReachedForces reached = q.after(x, on.from + x);
   reached.energy = x < both(kInfinity) ? reached.energy : both(-kInfinity);

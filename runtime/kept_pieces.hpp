@@ -36,41 +36,45 @@ enum class ResponseOf : std::uint8_t { Depth, Lateral };
 ///   force + slope x + curvature x^2,   x = d - from,
 /// and each node has its own, of which a move of the point changes the weights only. Results do not
 /// depend on the pieces that were kept. noexcept, allocation-free, bounded by the number of knots.
-/// Inline but for the search of another piece: a step evaluates a dozen pairs.
+/// Inline but for the search of another piece: a step evaluates a dozen pairs, and a call stores
+/// what its caller has in registers.
 template <std::size_t kPairs>
 class KeptPieces {
  public:
+  using Nodes = std::array<const NodeCurves*, 3>;
+
   /// One kind of response in every lane that is in use.
   KeptPieces(std::size_t lanes, ResponseOf kind) noexcept
       : lanes_(lanes), first_(kind), other_(kind) {}
   /// g in the first lane and h in the second.
   KeptPieces() noexcept : lanes_(2), first_(ResponseOf::Depth), other_(ResponseOf::Lateral) {}
 
-  /// The response of what follows, with weights of its own for h.
-  void keep_for(const InterpolatedResponse& response, const Vec3& lateral) noexcept {
-    const std::uintptr_t other_nodes = bits_apart(nodes_, response.nodes());
-    const std::uint64_t other_weights =
-        bits_apart(natural_, response.natural()) | bits_apart(lateral_, lateral);
-    if ((other_nodes | other_weights) != 0) begin(response, lateral, other_nodes != 0);
+  /// The response of what follows: the nodes, and what each counts in every lane.
+  void keep_for(const Nodes& nodes, const Vec3& weights) noexcept {
+    const std::uintptr_t others = other_nodes(nodes);
+    if ((others | other_weights(0, weights)) != 0) begin(nodes, weights, weights, others != 0);
   }
-  void keep_for(const InterpolatedResponse& response) noexcept {
-    keep_for(response, response.natural());
+  /// The same of two kinds in two lanes.
+  void keep_for(const Nodes& nodes, const Vec3& first, const Vec3& other) noexcept {
+    const std::uintptr_t others = other_nodes(nodes);
+    if ((others | other_weights(0, first) | other_weights(1, other)) != 0)
+      begin(nodes, first, other, others != 0);
   }
 
   /// The smallest deflections >= 0 at which the response has the forces of pair p, in closed form;
   /// all 0 for a force <= 0.
-  ReachedForces reach(std::size_t p, const Pair& force) noexcept {
+  [[gnu::always_inline]] ReachedForces reach(std::size_t p, const Pair& force) noexcept {
     PiecePair& on = pieces_[p];
-    const Start& q = on.merged;
+    const Merged& q = on.merged;
     if (const Pair rise = force - q.force, square = on.square(rise);
         all(less(Pair{}, rise) & at_most(force, on.end_force) & less(Pair{}, square))) {
-      const Pair x = smaller(2.0 * rise / (q.slope + roots(square)), on.to - on.from);
+      const Pair x = smaller(rise / (q.half_slope + roots(square)), on.to - on.from);
       return q.after(x, on.from + x);
     }
     return reach_elsewhere(p, force);
   }
   /// Force and energy at the deflections of pair p; all 0 for one <= 0.
-  ReachedForces evaluate(std::size_t p, const Pair& deflection) noexcept {
+  [[gnu::always_inline]] ReachedForces evaluate(std::size_t p, const Pair& deflection) noexcept {
     PiecePair& on = pieces_[p];
     if (all(less(Pair{}, deflection) & at_most(on.from, deflection) & less(deflection, on.to)))
       return on.merged.after(deflection - on.from, deflection);
@@ -80,25 +84,30 @@ class KeptPieces {
   std::size_t pairs() const noexcept { return kPairs == 1 ? 1 : pairs_of(lanes_); }
 
  private:
-  /// Two responses from the starts of their pieces on.
+  /// Two responses of a node at the starts of their pieces.
   struct Start {
     Pair force{}, slope{}, curvature{}, energy{};
+  };
+  /// Two responses of all three nodes from there on.
+  struct Merged {
+    Pair force{}, slope{}, half_slope{}, curvature{}, third{},
+        energy{};  ///< third: of the curvature
 
     /// At deflections d, lengths x after the starts.
     ReachedForces after(const Pair& x, const Pair& d) const noexcept {
-      const Pair work = x * (force + x * (slope / 2.0 + x * (curvature * kThird)));
+      const Pair work = x * (force + x * (half_slope + x * third));
       return {d, force + x * (slope + x * curvature), energy + work};
     }
   };
   struct PiecePair {
     Pair from{}, to{};  ///< m, where the pieces of all three nodes are in use
     Pair end_force{};   ///< N, at `to`; infinity where the piece has no end
-    Start merged;
+    Merged merged;
     std::array<Start, 3> nodes;
 
-    /// Square of the slope where the force has risen.
+    /// Square of half the slope where the force has risen.
     Pair square(const Pair& rise) const noexcept {
-      return merged.slope * merged.slope + 4.0 * merged.curvature * rise;
+      return merged.half_slope * merged.half_slope + merged.curvature * rise;
     }
     /// Do the pieces contain the answers of an inverse? The first that reach the forces do.
     Mask reaches(const Pair& force) const noexcept {
@@ -110,44 +119,43 @@ class KeptPieces {
     }
   };
 
-  /// Zero where the bits are the same. Without branches: a step asks half a dozen times.
-  static std::uint64_t bits_apart(const Vec3& a, const Vec3& b) noexcept {
-    std::uint64_t apart = 0;
-    for (std::size_t l = 0; l < 3; ++l)
-      apart |= std::bit_cast<std::uint64_t>(a[l]) ^ std::bit_cast<std::uint64_t>(b[l]);
-    return apart;
+  /// Zero where the nodes are those. Without branches: a step asks half a dozen times. The terms
+  /// are written one by one: a compiler that reads two at once waits for what was just stored.
+  std::uintptr_t other_nodes(const Nodes& nodes) const noexcept {
+    const auto apart = [&](std::size_t l) {
+      return std::bit_cast<std::uintptr_t>(nodes_[l]) ^ std::bit_cast<std::uintptr_t>(nodes[l]);
+    };
+    return apart(0) | apart(1) | apart(2);
   }
-  static std::uintptr_t bits_apart(const std::array<const NodeCurves*, 3>& a,
-                                   const std::array<const NodeCurves*, 3>& b) noexcept {
-    std::uintptr_t apart = 0;
-    for (std::size_t l = 0; l < 3; ++l)
-      apart |= std::bit_cast<std::uintptr_t>(a[l]) ^ std::bit_cast<std::uintptr_t>(b[l]);
-    return apart;
+  /// Zero where the weights in the first lane (0) or in the others (1) are those, bit by bit.
+  std::uint64_t other_weights(std::size_t lane, const Vec3& weights) const noexcept {
+    const auto apart = [&](std::size_t l) {
+      return std::bit_cast<std::uint64_t>(double{weights_[l][lane]}) ^
+             std::bit_cast<std::uint64_t>(weights[l]);
+    };
+    return apart(0) | apart(1) | apart(2);
   }
   Pair mix(const std::array<Start, 3>& nodes, Pair Start::*of) const noexcept {
     return weights_[0] * (nodes[0].*of) + weights_[1] * (nodes[1].*of) +
            weights_[2] * (nodes[2].*of);
   }
   void merge(PiecePair& on) const noexcept {
-    on.merged = {mix(on.nodes, &Start::force), mix(on.nodes, &Start::slope),
-                 mix(on.nodes, &Start::curvature), mix(on.nodes, &Start::energy)};
+    const Pair slope = mix(on.nodes, &Start::slope), curvature = mix(on.nodes, &Start::curvature);
+    on.merged = {mix(on.nodes, &Start::force), slope, slope / 2.0, curvature, curvature * kThird,
+                 mix(on.nodes, &Start::energy)};
     const Pair length = on.to - on.from;
     const Pair end = on.merged.force + length * (on.merged.slope + length * on.merged.curvature);
     on.end_force = length < both(kInfinity) ? end : both(kInfinity);
   }
 
   /// Not inlined, so that keep_for() is.
-  [[gnu::noinline]] void begin(const InterpolatedResponse& response, const Vec3& lateral,
-                               bool other_nodes) noexcept {
-    natural_ = response.natural();
-    lateral_ = lateral;
-    const Vec3& first = first_ == ResponseOf::Depth ? natural_ : lateral_;
-    const Vec3& other = other_ == ResponseOf::Depth ? natural_ : lateral_;
+  [[gnu::noinline]] void begin(const Nodes& nodes, const Vec3& first, const Vec3& other,
+                               bool others) noexcept {
     for (std::size_t l = 0; l < 3; ++l) weights_[l] = Pair{first[l], other[l]};
-    if (other_nodes) find_all(response.nodes());
+    if (others) find_all(nodes);
     for (std::size_t p = 0; p < pairs(); ++p) merge(pieces_[p]);
   }
-  void find_all(const std::array<const NodeCurves*, 3>& nodes) noexcept;
+  void find_all(const Nodes& nodes) noexcept;
   ReachedForces reach_elsewhere(std::size_t p, Pair force) noexcept;
   ReachedForces evaluate_elsewhere(std::size_t p, Pair deflection) noexcept;
   void walk(std::size_t p, const Pair& force) noexcept;
@@ -158,10 +166,9 @@ class KeptPieces {
   void keep(std::size_t lane, const Knots& knots) noexcept;
 
   std::size_t lanes_;
-  ResponseOf first_, other_;                  ///< of the first lane and of the others
-  std::array<const NodeCurves*, 3> nodes_{};  ///< owners of the pieces; null: none
-  Vec3 natural_{}, lateral_{};                ///< weights of what is merged, of g and h
-  std::array<Pair, 3> weights_{};             ///< the same: first lane, other lanes
+  ResponseOf first_, other_;       ///< of the first lane and of the others
+  Nodes nodes_{};                  ///< owners of the pieces; null: none
+  std::array<Pair, 3> weights_{};  ///< of what is merged: first lane, other lanes
   std::array<PiecePair, kPairs> pieces_;
 };
 

@@ -35,6 +35,15 @@ bool LateralBranches::stays_tangential(const Vec3& normal) const noexcept {
   return dot(normal_, normal) > 0;
 }
 
+/// Finds where the forces of two branches are reached.
+inline void LateralBranches::reach(std::size_t p, BranchPair& branch) const noexcept {
+  const Pair(&force)[3] = branch.force;
+  const Pair magnitude = roots(force[0] * force[0] + force[1] * force[1] + force[2] * force[2]);
+  branch.at = pieces_.reach(p, magnitude);
+  if (!all(at_most(branch.at.deflection, branch.longest)))  // by rounding
+    branch.at = pieces_.evaluate(p, smaller(branch.at.deflection, branch.longest));
+}
+
 /// Moves the branches to another place and returns M and K there. Their directions turn by the
 /// smallest rotation that takes one normal to the other.
 LateralMemory LateralBranches::move(const LateralPlace& place, double factor) const noexcept {
@@ -44,7 +53,7 @@ LateralMemory LateralBranches::move(const LateralPlace& place, double factor) co
   Pair stored{};
   const Branches& branches = branches_[here_];
   Branches& moved = branches_[slid_];
-  pieces_.keep_for(place.response, place.weights);
+  pieces_.keep_for(place.response.nodes(), place.weights);
   for (std::size_t p = 0; p < pieces_.pairs(); ++p) {
     const BranchPair& from = branches[p];
     BranchPair& there = moved[p];
@@ -66,7 +75,7 @@ LateralMemory LateralBranches::hold(const LateralPlace& place, const Branches& f
   LateralSums sums;
   Pair stored{};
   Branches& held = branches_[held_];
-  pieces_.keep_for(place.response, place.weights);
+  pieces_.keep_for(place.response.nodes(), place.weights);
   for (std::size_t p = 0; p < pieces_.pairs(); ++p) {
     BranchPair& there = held[p];
     for (std::size_t k = 0; k < 3; ++k) there.force[k] = scale * from[p].force[k];
@@ -77,15 +86,6 @@ LateralMemory LateralBranches::hold(const LateralPlace& place, const Branches& f
     stored += place.fractions.pair[p] * there.at.conjugate(there.at.force);
   }
   return sums.memory(stored[0] + stored[1]);
-}
-
-/// Finds where the forces of two branches are reached.
-void LateralBranches::reach(std::size_t p, BranchPair& branch) const noexcept {
-  const Pair(&force)[3] = branch.force;
-  const Pair magnitude = roots(force[0] * force[0] + force[1] * force[1] + force[2] * force[2]);
-  branch.at = pieces_.reach(p, magnitude);
-  if (!all(at_most(branch.at.deflection, branch.longest)))  // by rounding
-    branch.at = pieces_.evaluate(p, smaller(branch.at.deflection, branch.longest));
 }
 
 LateralMemory LateralBranches::carried_to(const LateralPlace& place, double factor) const noexcept {
@@ -173,7 +173,7 @@ void LateralBranches::pass(const LateralPlace& place, const Vec3& target, double
 double LateralBranches::find_stored(const LateralPlace& place) noexcept {
   if (!now_.any) return 0;
   Pair stored{};
-  pieces_.keep_for(place.response, place.weights);
+  pieces_.keep_for(place.response.nodes(), place.weights);
   for (std::size_t p = 0; p < pieces_.pairs(); ++p) {
     BranchPair& branch = branches_[here_][p];
     reach(p, branch);

@@ -67,7 +67,7 @@ class LateralBranches {
   LateralMemory move(const LateralPlace& place, double factor) const noexcept;
   LateralMemory hold(const LateralPlace& place, const Branches& from, double scale) const noexcept;
   void shrink(double scale) noexcept;
-  void reach(std::size_t p, BranchPair& branch) const noexcept;
+  [[gnu::always_inline]] void reach(std::size_t p, BranchPair& branch) const noexcept;
   void repeat(const LateralPlace& place, const LateralMemory& changed, const Vec3& slid) noexcept;
 
   /// Where the memories lie, at the end of the slide that was considered last, and with the grip

@@ -51,7 +51,7 @@ LateralSlip LocalModel::relaxed_slip_within(const Deflection& d, const LocalResp
 /// deflection at this depth.
 double LocalModel::lateral_reached(const LocalResponse& at, double force,
                                    TipPieces& pieces) const noexcept {
-  pieces.keep_for(response_, lateral_weights());
+  pieces.keep_for(response_.nodes(), response_.natural(), lateral_weights());
   return pieces.reach(0, Pair{at.relaxed.instant.force, force}).deflection[1];
 }
 

@@ -263,8 +263,9 @@ class LocalModel {
     r.friction_normal_force = r.normal_force;
   }
   /// The same of responses that relax.
-  void relaxing_response(const Deflection& d, TipPieces& pieces, LocalResponse& r) const noexcept {
-    pieces.keep_for(response_, lateral_weights());
+  [[gnu::always_inline]] void relaxing_response(const Deflection& d, TipPieces& pieces,
+                                                LocalResponse& r) const noexcept {
+    pieces.keep_for(response_.nodes(), response_.natural(), lateral_weights());
     const ReachedForces at = pieces.evaluate(0, Pair{d.depth, d.lateral});
     r.relaxed = relaxed_response(memory_->normal, {d.depth, at.force[0], at.energy[0]});
     take({r.relaxed.force, at.force[1], r.relaxed.energy + at.energy[1]}, d, r);

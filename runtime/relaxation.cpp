@@ -29,8 +29,8 @@ double Relaxation::sum_of_forces(const Lanes& fractions, double factor) const no
 
 /// relaxed: F. Infinite where a force is beyond every depth of the response. The lane after those
 /// of the branches is that of the skin.
-NormalMemory Relaxation::sums(const InterpolatedResponse& response, const Lanes& fractions,
-                              double factor, double relaxed) const noexcept {
+inline NormalMemory Relaxation::sums(const InterpolatedResponse& response, const Lanes& fractions,
+                                     double factor, double relaxed) const noexcept {
   double stored = 0;
   const auto conjugate_of = [&](std::size_t p, const Pair& force) {
     const Pair conjugate = pieces_.reach(p, kReachable * force).conjugate(force);
@@ -38,7 +38,7 @@ NormalMemory Relaxation::sums(const InterpolatedResponse& response, const Lanes&
     stored = plus(stored, fraction > Pair{} ? fraction * conjugate : Pair{});
     return conjugate;
   };
-  pieces_.keep_for(response);
+  pieces_.keep_for(response.nodes(), response.natural());
   const std::size_t last = times_ / 2;
   for (std::size_t p = 0; p < last; ++p) conjugate_of(p, factor * memory_.pair[p]);
   const double beside_skin = times_ % 2 == 1 ? factor * memory_[times_ - 1] : relaxed;
@@ -70,7 +70,7 @@ TissueMemory Relaxation::carried_to(const ContactPlace& place, double distance,
     there_ = surface_->fractions(place.point);
   }
   const Lanes& fractions = surface_->relaxes_alike() ? fractions_ : there_;
-  const double factor = std::exp(-distance / surface_->tool_radius());
+  const double factor = std::exp(-distance * surface_->inverse_tool_radius());
   // The lateral memory first, as the force waits longest for it.
   TissueMemory there;
   if (shears)

@@ -74,8 +74,9 @@ class Relaxation {
   NormalMemory normal_carried_to(const InterpolatedResponse& response, const Lanes& fractions,
                                  double factor) const noexcept;
   double sum_of_forces(const Lanes& fractions, double factor) const noexcept;
-  NormalMemory sums(const InterpolatedResponse& response, const Lanes& fractions, double factor,
-                    double relaxed) const noexcept;
+  [[gnu::always_inline]] NormalMemory sums(const InterpolatedResponse& response,
+                                           const Lanes& fractions, double factor,
+                                           double relaxed) const noexcept;
   void keep_decay(double dt) noexcept;
   void find() noexcept;
   LateralPlace here() const noexcept { return {*response_, fractions_, normal_, weights_}; }

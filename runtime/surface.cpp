@@ -118,6 +118,7 @@ Surface::Surface(const Library& library) : elements_(library.triangles.size()) {
   }
   relaxation_times_ = library.relaxation_times;
   tool_radius_ = library.tool_radius;
+  inverse_tool_radius_ = tool_radius_ > 0 ? 1 / tool_radius_ : 0;
   if (library.relaxes()) {
     check_relaxation(library);
     relaxes_alike_ = all_relax_alike(library);

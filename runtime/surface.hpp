@@ -117,7 +117,8 @@ class Surface {
   const std::vector<double>& relaxation_times() const noexcept { return relaxation_times_; }
   /// Whether all nodes have the same fractions.
   bool relaxes_alike() const noexcept { return relaxes_alike_; }
-  double tool_radius() const noexcept { return tool_radius_; }  ///< m
+  double tool_radius() const noexcept { return tool_radius_; }                  ///< m
+  double inverse_tool_radius() const noexcept { return inverse_tool_radius_; }  ///< 1/m, 0: none
   /// sum n_l sigma_l, 1, across the normal n at the point; zero where no node leans.
   Vec3 lean(const SurfacePoint& p, const Vec3& n) const noexcept {
     if (!leans_) return {};
@@ -158,7 +159,7 @@ class Surface {
   double deepest_ = 0;
   std::vector<double> relaxation_times_;
   bool relaxes_alike_ = true;
-  double tool_radius_ = 0;
+  double tool_radius_ = 0, inverse_tool_radius_ = 0;
   bool leans_ = false;
   std::size_t curves_at_ = 1;  ///< line of the curves of a node, counted from its first
 };

@@ -50,7 +50,8 @@ TEST(KeptPieces, ForcesAreReachedAtTheSameDeflectionsWhateverPiecesWereKept) {
       const Lanes normal_forces = random_forces(lanes, g, random);
       const Lanes lateral_forces = random_forces(lanes, h, random);
       BranchPieces fresh(lanes, ResponseOf::Depth);
-      for (BranchPieces* pieces : {&normal, &lateral, &fresh}) pieces->keep_for(r);
+      for (BranchPieces* pieces : {&normal, &lateral, &fresh})
+        pieces->keep_for(r.nodes(), r.natural());
       for (std::size_t i = 0; i < lanes; ++i) {
         const ReachedForces z = normal.reach(i / 2, normal_forces.pair[i / 2]);
         const ReachedForces rho = lateral.reach(i / 2, lateral_forces.pair[i / 2]);
@@ -74,7 +75,7 @@ TEST(KeptPieces, ValuesAreThoseOfTheResponses) {
   for (int trial = 0; trial < 20000; ++trial) {
     const InterpolatedResponse r = (trial % 40 < 20 ? one : other).at(random_natural(random));
     const Pair d{random() % 8 > 0 ? any(random) : -1e-3, random() % 8 > 0 ? any(random) : 0};
-    tip.keep_for(r);
+    tip.keep_for(r.nodes(), r.natural(), r.natural());
     const ReachedForces at = tip.evaluate(0, d);
     const CurveValue expected[] = {r.normal(d[0]), r.lateral(d[1])};
     for (std::size_t i = 0; i < 2; ++i) {
@@ -90,7 +91,8 @@ TEST(KeptPieces, AForceBeyondEveryDepthIsReachedNowhere) {
   std::array<CacheLine, 4> memory;
   const NodeCurves node = NodeCurves::write(memory.data(), flat, flat);
   TipPieces pieces;
-  pieces.keep_for({{&node, &node, &node}, {0.2, 0.3, 0.5}});
+  const Vec3 weights{0.2, 0.3, 0.5};
+  pieces.keep_for({&node, &node, &node}, weights, weights);
   const Pair forces{0.06, 0.04};
   const ReachedForces at = pieces.reach(0, forces);
   EXPECT_TRUE(std::isinf(at.conjugate(forces)[0]));
