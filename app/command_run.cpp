@@ -38,6 +38,7 @@ struct RunOptions {
   LiveSettings live;
   std::vector<double> at_mm{0, 0, 0};
   std::optional<double> watchdog, max_force;
+  double wake_early_us = 0;
   std::optional<double> friction;  ///< none: that of the certificate
   bool list = false, uncertified = false, strict = false;
 };
@@ -132,6 +133,7 @@ void enter_options(RunOptions& options) {
   LiveSettings& live = options.live;
   live.contact.friction = options.friction.value_or(0);
   for (std::size_t i = 0; i < 3; ++i) live.pose.position[i] = 1e-3 * options.at_mm[i];
+  live.loop.wake_early = 1e-6 * options.wake_early_us;
   if (options.watchdog) live.safety.watchdog = *options.watchdog;
   if (options.max_force) live.safety.max_force = *options.max_force;
   require_within_limits(live);
@@ -230,6 +232,9 @@ void add_loop_options(CLI::App& command, RunOptions& o) {
       ->check(CLI::Range(0, 99));
   command.add_option("--core", o.live.loop.realtime.core, "CPU core of the force loop")
       ->check(CLI::Range(0, 4095));
+  command.add_option("--wake-early-us", o.wake_early_us,
+                     "us before a step is due at which the loop wakes, to read the clock until it "
+                     "is due; 0: it sleeps until then");
   command.add_option("--search-rate", o.live.search_rate, "Rate of the search thread, Hz; 0: none");
   command
       .add_option("--at-mm", o.at_mm,

@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "format/error.hpp"
 #include "runtime/settings_check.hpp"
 
 namespace palpate::runtime {
@@ -26,7 +27,15 @@ LoopThread::LoopThread(LoopBody& loop, Device& device, const LoopThreadSettings&
           settings.watchdog, "a finite value above 0");
   require(settings.duration >= 0 && settings.duration <= kMostDuration, "duration (s)",
           settings.duration, "0 (until it is stopped) to 1e9");
+  require(settings.wake_early >= 0 &&
+              settings.wake_early * settings.rate <= LoopThreadSettings::kMostEarly,
+          "wake_early (s)", settings.wake_early, "0 to 0.8 periods of the loop");
+  if (settings.wake_early > 0 && device.has_own_thread())
+    throw Error(ErrorKind::Configuration, "force loop",
+                "the driver of " + device.name() + " calls the loop at its own times",
+                "leave out the early wake");
   period_ = std::llround(1e9 / settings.rate);
+  early_ = std::llround(1e9 * settings.wake_early);
   if (device.has_own_thread()) {
     device.start_calls([this] { return foreign_step(); });
   } else {
@@ -72,7 +81,7 @@ void LoopThread::run() {
   }
   begin(monotonic_ns() + period_);
   while (!stop_ && due_ < end_) {
-    sleep_until(due_);
+    wait_until(due_, early_);
     if (!loop_.tick(due_)) break;
     due_ += period_;
     const std::int64_t now = monotonic_ns();

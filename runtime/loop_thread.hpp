@@ -22,6 +22,11 @@ struct LoopThreadSettings {
   double watchdog = default_watchdog(1000);
   RealtimeSettings realtime;
   double duration = 0;  ///< s from the first step, rounded to periods; 0: until it is stopped
+  /// s before a step is due at which the thread wakes, to read the clock until it is due; up to
+  /// kMostEarly of a period. 0: it sleeps until then.
+  double wake_early = 0;
+  /// Linux takes the processor away from a real-time thread that keeps it for 95 % of a second.
+  static constexpr double kMostEarly = 0.8;
 };
 
 /// Runs a loop until it is stopped or the device is lost. Steps are due at absolute times, so
@@ -31,7 +36,8 @@ struct LoopThreadSettings {
 /// allows, the device is halted for the rest of the session.
 class LoopThread {
  public:
-  /// Starts at once. The device is open. @throws Error(Configuration) for settings out of range.
+  /// Starts at once. The device is open. @throws Error(Configuration) for settings out of range,
+  /// and for an early wake where the driver calls the loop from its own thread.
   LoopThread(LoopBody& loop, Device& device, const LoopThreadSettings& settings);
   ~LoopThread();  ///< stops
   LoopThread(const LoopThread&) = delete;
@@ -56,6 +62,7 @@ class LoopThread {
   Device& device_;
   LoopThreadSettings settings_;
   std::int64_t period_ = 0;  ///< ns
+  std::int64_t early_ = 0;   ///< ns
   std::int64_t due_ = 0;     ///< monotonic, ns
   std::int64_t end_ = 0;     ///< monotonic, ns: no step is due from here on
   std::atomic<bool> stop_{false}, running_{true}, halted_{false};

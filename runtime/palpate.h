@@ -351,6 +351,9 @@ typedef struct palpate_loop_settings {
    * known, and the loop is not certified. */
   const palpate_device_constants* constants;
   uint32_t uncertified; /* 1: start although constants do not certify the rate; default 0 */
+  double wake_early; /* s before a step is due at which the thread wakes, to read the clock until it
+                        is due: a system wakes a sleeping thread late. 0 (default) to 0.8 periods,
+                        which take as much of a processor */
 } palpate_loop_settings;
 
 typedef struct palpate_loop_report {

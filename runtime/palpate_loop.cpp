@@ -67,7 +67,9 @@ palpate::runtime::SafetySettings safety_of(const palpate_loop_settings& s,
 }
 
 palpate::runtime::LoopThreadSettings thread_of(const palpate_loop_settings& s) {
-  return {s.rate, watchdog_of(s), {s.priority, s.core}};
+  palpate::runtime::LoopThreadSettings thread{s.rate, watchdog_of(s), {s.priority, s.core}};
+  thread.wake_early = s.wake_early;
+  return thread;
 }
 
 }  // namespace
@@ -187,7 +189,8 @@ void palpate_loop_settings_default(palpate_loop_settings* settings) {
                0,
                0,
                nullptr,
-               0};
+               0,
+               thread.wake_early};
 }
 
 int palpate_loop_start(palpate_state* state, const palpate_device* device,

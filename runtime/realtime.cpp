@@ -73,4 +73,10 @@ void sleep_until(std::int64_t monotonic) noexcept {
   }
 }
 
+void wait_until(std::int64_t monotonic, std::int64_t early) noexcept {
+  sleep_until(monotonic - early);
+  while (monotonic_ns() < monotonic) {
+  }
+}
+
 }  // namespace palpate::runtime

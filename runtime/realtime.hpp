@@ -19,5 +19,8 @@ std::string become_realtime(const RealtimeSettings& settings);
 
 std::int64_t monotonic_ns() noexcept;               ///< CLOCK_MONOTONIC, ns; no system call
 void sleep_until(std::int64_t monotonic) noexcept;  ///< absolute, so that periods do not drift
+/// Sleeps until `early` (ns, >= 0) before a time, and reads the clock until it has come: a system
+/// wakes a thread tens of microseconds late, more on a virtual machine.
+void wait_until(std::int64_t monotonic, std::int64_t early) noexcept;
 
 }  // namespace palpate::runtime

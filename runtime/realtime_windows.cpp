@@ -79,4 +79,9 @@ void sleep_until(std::int64_t monotonic) noexcept {
   while (monotonic_ns() < monotonic) YieldProcessor();
 }
 
+void wait_until(std::int64_t monotonic, std::int64_t early) noexcept {
+  sleep_until(monotonic - early);
+  while (monotonic_ns() < monotonic) YieldProcessor();
+}
+
 }  // namespace palpate::runtime

@@ -20,15 +20,16 @@ struct Machine {
   int processors = 0;                ///< that this process may use
   double memory = 0, available = 0;  ///< bytes, of the machine and free
   std::string blas_kernel;
-  std::string realtime_refusal;            ///< what become_realtime was refused; empty: nothing
-  bool realtime_kernel = false;            ///< PREEMPT_RT
-  double late_median = 0, late_worst = 0;  ///< s, of the steps of a short loop of 1 kHz
+  std::string realtime_refusal;              ///< what become_realtime was refused; empty: nothing
+  bool realtime_kernel = false;              ///< PREEMPT_RT
+  double late_median = 0, late_worst = 0;    ///< s, of the steps of a short loop of 1 kHz
+  double early_median = 0, early_worst = 0;  ///< s, of one that wakes 0.4 ms early
   std::vector<Optional> libraries, programs;
   std::string folder;    ///< in which the artifacts would be
   double free_disk = 0;  ///< bytes there
 };
 
-/// Looks at the machine; takes half a second for the loop.
+/// Looks at the machine; takes a second for two loops.
 /// @param blas_kernel  that of fem::blas_kernel()
 Machine look_at_machine(const std::string& blas_kernel);
 

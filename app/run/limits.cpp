@@ -41,10 +41,17 @@ void require(const OptionRange& range, double value) {
       "give a value in this range, or leave it out; nothing was begun");
 }
 
+/// The range is that of the period. @pre the rate is within its limits
+void require_wake_within(const runtime::LoopThreadSettings& loop) {
+  const double most = 1e6 * runtime::LoopThreadSettings::kMostEarly / loop.rate;  // us
+  require({"--wake-early-us", "us", 0, most}, 1e6 * loop.wake_early);
+}
+
 }  // namespace
 
 void require_within_limits(const LiveSettings& live) {
   require(kRate, live.loop.rate);
+  require_wake_within(live.loop);
   require(kDuration, live.duration);
   require(kFriction, live.contact.friction);
   require(kMaxForce, live.safety.max_force);

@@ -3,15 +3,17 @@
 //
 //   bench_deform [--benchmark_filter=...]
 //
-// Beside the loop, counters of its steps that began more than half a period after their time, in a
-// thousand, and of the latest of them in microseconds: alone, beside a thread that computes as long
-// as a picture takes without using palpate, and beside the pictures. The three take turns of half a
-// second, so that all meet the same other work of the machine. What pictures add is `pictures` less
-// `computing`; `realtime` is 1 where the loop had real-time rights.
-// A step begins late because the system wakes the loop late, or because the step before took too
-// long: `overran` counts the steps that themselves took more than half a period, `longest_us` is
-// the longest of all.
+// Beside the loop, which wakes `early_us` before its steps are due, counters of those that began
+// more than half a period after their time, in a thousand, and of the latest of them in
+// microseconds: alone, beside a thread that computes as long as a picture takes without using
+// palpate, and beside the pictures. The three take turns of half a second, so that all meet the
+// same other work of the machine. `realtime` is 1 where the loop had real-time rights. A step
+// begins late because another thread has the processor, because the system or the host of a virtual
+// machine wakes the loop late, or because the step before took too long. `displaced` counts the
+// late steps before which the system gave the processor of the loop to another thread; `overran`
+// the steps that themselves took more than half a period; `longest_us` is the longest.
 #include <benchmark/benchmark.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <atomic>
@@ -86,9 +88,16 @@ struct Scene {
   palpate_state state;
 };
 
+/// How often the system has given the processor of the calling thread to another one.
+std::int64_t times_displaced() {
+  rusage used{};
+  getrusage(RUSAGE_THREAD, &used);
+  return used.ru_nivcsw;
+}
+
 /// The lateness of the steps of a loop, and how long they took.
 struct Lateness {
-  std::int64_t steps = 0, late = 0, worst_ns = 0, overran = 0, longest_ns = 0;
+  std::int64_t steps = 0, late = 0, displaced = 0, worst_ns = 0, overran = 0, longest_ns = 0;
 
   double in_thousand() const {
     return 1e3 * static_cast<double>(late) / static_cast<double>(steps);
@@ -99,15 +108,19 @@ struct Lateness {
 
 /// Steps at their times until told to end.
 /// @return whether it had real-time rights
-bool run_loop(Scene& scene, const std::atomic<bool>& over, Lateness& lateness) {
+bool run_loop(Scene& scene, std::int64_t early, const std::atomic<bool>& over, Lateness& lateness) {
   const bool realtime = runtime::become_realtime({}).empty();
-  std::int64_t due = runtime::monotonic_ns();
+  std::int64_t due = runtime::monotonic_ns(), displaced = times_displaced();
   do {
     due += kPeriodNs;
-    runtime::sleep_until(due);
+    runtime::wait_until(due, early);
     const std::int64_t begin = runtime::monotonic_ns();
+    const std::int64_t displaced_before = std::exchange(displaced, times_displaced());
     lateness.worst_ns = std::max(lateness.worst_ns, begin - due);
-    if (begin - due > kPeriodNs / 2) ++lateness.late;
+    if (begin - due > kPeriodNs / 2) {
+      ++lateness.late;
+      if (displaced > displaced_before) ++lateness.displaced;
+    }
     scene.step(1e-9 * static_cast<double>(kPeriodNs) * static_cast<double>(++lateness.steps));
     const std::int64_t took = runtime::monotonic_ns() - begin;
     lateness.longest_ns = std::max(lateness.longest_ns, took);
@@ -118,11 +131,11 @@ bool run_loop(Scene& scene, const std::atomic<bool>& over, Lateness& lateness) {
 
 /// Calls `picture` 60 times a second for half a second beside a loop. @return as run_loop().
 template <class Picture>
-bool beside_a_loop(Scene& scene, Lateness& lateness, const Picture& picture) {
+bool beside_a_loop(Scene& scene, std::int64_t early, Lateness& lateness, const Picture& picture) {
   constexpr int kPictures = 30;
   std::atomic<bool> over{false};
   bool realtime = false;
-  std::thread loop([&] { realtime = run_loop(scene, over, lateness); });
+  std::thread loop([&] { realtime = run_loop(scene, early, over, lateness); });
   for (int i = 0; i < kPictures; ++i) {
     picture();
     std::this_thread::sleep_for(std::chrono::milliseconds(16));
@@ -155,13 +168,14 @@ void deform_beside_a_loop(benchmark::State& state) {
   Scene scene(static_cast<std::size_t>(state.range(0)));
   std::vector<Vec3> x(scene.skin.positions().size());
   Lateness alone, computing, pictures;
+  const std::int64_t early = 1000 * state.range(1);
   bool realtime = true;
   std::chrono::nanoseconds last{};
   for (auto _ : state) {
     std::chrono::nanoseconds spent{};
     int count = 0;
-    realtime &= beside_a_loop(scene, alone, [] {});
-    realtime &= beside_a_loop(scene, pictures, [&] {
+    realtime &= beside_a_loop(scene, early, alone, [] {});
+    realtime &= beside_a_loop(scene, early, pictures, [&] {
       const auto begin = Clock::now();
       scene.skin.displace(scene.state.touch(), x.front().data());
       benchmark::DoNotOptimize(x.data());
@@ -169,7 +183,7 @@ void deform_beside_a_loop(benchmark::State& state) {
       ++count;
     });
     last = spent / count;
-    realtime &= beside_a_loop(scene, computing, [&] { compute_for(last); });
+    realtime &= beside_a_loop(scene, early, computing, [&] { compute_for(last); });
     state.SetIterationTime(std::chrono::duration<double>(last).count());
   }
   state.counters["realtime"] = realtime ? 1 : 0;
@@ -177,16 +191,17 @@ void deform_beside_a_loop(benchmark::State& state) {
   for (const auto& [name, of] : {std::pair{"alone", &alone}, std::pair{"computing", &computing},
                                  std::pair{"pictures", &pictures}}) {
     state.counters[std::string("late_") + name] = of->in_thousand();
+    state.counters[std::string("displaced_") + name] = static_cast<double>(of->displaced);
     state.counters[std::string("worst_us_") + name] = of->worst_us();
     state.counters[std::string("overran_") + name] = static_cast<double>(of->overran);
     state.counters[std::string("longest_us_") + name] = of->longest_us();
   }
 }
 
-BENCHMARK(deform)->Arg(60)->Arg(200)->Unit(benchmark::kMillisecond);
+BENCHMARK(deform)->ArgName("modes")->Arg(60)->Arg(200)->Unit(benchmark::kMillisecond);
 BENCHMARK(deform_beside_a_loop)
-    ->Arg(60)
-    ->Arg(200)
+    ->ArgNames({"modes", "early_us"})
+    ->ArgsProduct({{60, 200}, {0, 200}})
     ->Iterations(20)
     ->UseManualTime()
     ->Unit(benchmark::kMillisecond);

@@ -95,6 +95,7 @@ TEST(LoopThread, OfADurationTakesOneStepInEachPeriodAndEndsByItself) {
 class DueTimes : public runtime::LoopBody {
  public:
   bool tick(std::int64_t due) noexcept override {
+    premature += runtime::monotonic_ns() < due ? 1 : 0;
     if (count < due_at.size()) due_at[count++] = due;
     return count < due_at.size();
   }
@@ -102,7 +103,7 @@ class DueTimes : public runtime::LoopBody {
   std::int64_t heartbeat() const noexcept override { return due_at[0]; }
 
   std::array<std::int64_t, 40> due_at{};  ///< ns
-  std::size_t count = 0;
+  std::size_t count = 0, premature = 0;
   std::int64_t missed = 0;
 };
 
@@ -113,6 +114,20 @@ TEST(LoopThread, StepsAreDueAPeriodApartOfTheRate) {
   wait_until_over(thread);
   thread.stop();
   ASSERT_EQ(loop.count, loop.due_at.size());
+  const auto periods = static_cast<std::int64_t>(loop.count) - 1 + loop.missed;
+  EXPECT_EQ(loop.due_at.back() - loop.due_at.front(), 400'000 * periods);
+}
+
+TEST(LoopThread, ThatWakesEarlyStepsWhenAStepIsDue) {
+  DueTimes loop;
+  ScriptedDevice device;
+  LoopThreadSettings settings = ordinary(2500, 10);
+  settings.wake_early = 250e-6;
+  LoopThread thread(loop, device, settings);
+  wait_until_over(thread);
+  thread.stop();
+  ASSERT_EQ(loop.count, loop.due_at.size());
+  EXPECT_EQ(loop.premature, 0U);
   const auto periods = static_cast<std::int64_t>(loop.count) - 1 + loop.missed;
   EXPECT_EQ(loop.due_at.back() - loop.due_at.front(), 400'000 * periods);
 }
@@ -229,6 +244,20 @@ TEST(LoopThread, RefusesSettingsOutOfRange) {
     EXPECT_THROW(LoopThread(rig.loop, rig.device, settings), Error) << duration;
   }
   EXPECT_THROW(LoopThread(rig.loop, rig.device, ordinary(1000, 0)), Error);
+  for (const double early : {-1e-6, 0.81e-3, std::numeric_limits<double>::quiet_NaN()}) {
+    LoopThreadSettings settings = ordinary(1000, 1);
+    settings.wake_early = early;
+    EXPECT_THROW(LoopThread(rig.loop, rig.device, settings), Error) << early;
+  }
+}
+
+TEST(LoopThread, CannotWakeEarlyWhereTheDriverKeepsTheTime) {
+  LateStarter device;
+  palpate_state state(plate_body(), {0.3, 5e-3});
+  ForceLoop loop(device, state, kPatient, nullptr);
+  LoopThreadSettings settings = ordinary(1000, 1);
+  settings.wake_early = 1e-4;
+  EXPECT_THROW(LoopThread(loop, device, settings), Error);
 }
 
 }  // namespace

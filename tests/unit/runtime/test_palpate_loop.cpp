@@ -296,6 +296,10 @@ TEST_F(PalpateLoop, RefusesSettingsOutOfRange) {
   settings.rate = 0;
   EXPECT_EQ(palpate_loop_start(state_, &device, &settings, &loop), PALPATE_ERROR_ARGUMENT);
   EXPECT_NE(std::strstr(palpate_last_error(), "rate"), nullptr);
+  palpate_loop_settings_default(&settings);
+  settings.wake_early = 0.9 / settings.rate;
+  EXPECT_EQ(palpate_loop_start(state_, &device, &settings, &loop), PALPATE_ERROR_ARGUMENT);
+  EXPECT_NE(std::strstr(palpate_last_error(), "wake_early"), nullptr);
   settings.size = 3;
   EXPECT_EQ(palpate_loop_start(state_, &device, &settings, &loop), PALPATE_ERROR_ARGUMENT);
   device.read = nullptr;

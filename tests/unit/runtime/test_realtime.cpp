@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <sched.h>
 
+#include <ctime>
 #include <string>
 #include <thread>
 
@@ -53,6 +54,26 @@ TEST(MonotonicClock, SleepsUntilAnAbsoluteTime) {
   runtime::sleep_until(due);
   EXPECT_GE(runtime::monotonic_ns(), due);
   runtime::sleep_until(due);  // in the past: returns at once
+}
+
+/// Processor time of the calling thread, ns.
+std::int64_t busy_ns() {
+  timespec spent{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &spent);
+  return spent.tv_sec * 1'000'000'000 + spent.tv_nsec;
+}
+
+TEST(MonotonicClock, WaitsAwakeForTheLastPartOfATime) {
+  constexpr std::int64_t kWait = 50'000'000, kEarly = 20'000'000;
+  const std::int64_t busy = busy_ns(), start = runtime::monotonic_ns();
+  runtime::wait_until(start + kWait, kEarly);
+  const std::int64_t end = runtime::monotonic_ns();
+  EXPECT_GE(end, start + kWait);
+  EXPECT_GT(busy_ns() - busy, 0);
+  EXPECT_LE(busy_ns() - busy, end - (start + kWait - kEarly));  // asleep until then
+  const std::int64_t before = busy_ns();
+  runtime::wait_until(start, kEarly);  // in the past
+  EXPECT_LT(busy_ns() - before, kEarly / 2);
 }
 
 }  // namespace

@@ -55,7 +55,11 @@ TEST(Findings, NameTheRemedyOfEachDefect) {
   EXPECT_EQ(only_missing(machine), "real-time rights: no SCHED_FIFO priority: raise rtprio");
   machine = good_machine();
   machine.late_worst = 2e-3;
-  EXPECT_THAT(only_missing(machine), testing::HasSubstr("2000 us at worst"));
+  machine.early_median = 1e-6;
+  machine.early_worst = 70e-6;
+  EXPECT_THAT(only_missing(machine),
+              testing::HasSubstr("2000 us at worst; that wakes 400 us early: 1 and 70 us"));
+  EXPECT_THAT(only_missing(machine), testing::HasSubstr("--wake-early-us"));
   machine = good_machine();
   machine.libraries[0].found = false;
   EXPECT_THAT(only_missing(machine), testing::HasSubstr("apt install libcomedi0"));

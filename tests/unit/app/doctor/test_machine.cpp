@@ -13,6 +13,8 @@ TEST(Machine, IsLookedAt) {
   EXPECT_GT(machine.available, 0);
   EXPECT_GE(machine.late_worst, machine.late_median);
   EXPECT_GE(machine.late_median, 0);
+  EXPECT_GE(machine.early_worst, machine.early_median);
+  EXPECT_GE(machine.early_median, 0);
   EXPECT_GT(machine.free_disk, 0);
   EXPECT_EQ(machine.libraries.size(), 3U);
 }
