@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "app/blas_kernel.hpp"
 
+#include <pthread.h>
 #include <unistd.h>
 
 #include <cstdlib>
+#include <cstring>
 
 namespace palpate::app {
 namespace {
@@ -26,13 +28,21 @@ bool set_if_absent(const char* name, const char* value) {
   return std::getenv(name) == nullptr && setenv(name, value, 0) == 0;
 }
 
+/// The system calls a program "exe" that was started as /proc/self/exe; `top` and `pkill` shall
+/// find it by the name that it was given.
+void restore_name(const char* given) {
+  const char* folder_end = std::strrchr(given, '/');
+  pthread_setname_np(pthread_self(), folder_end == nullptr ? given : folder_end + 1);
+}
+
 }  // namespace
 
 void ensure_blas_kernel(char** arguments) {
   const char* kernel = kernel_of_processor();
   const bool chosen = kernel != nullptr && set_if_absent("OPENBLAS_CORETYPE", kernel);
   const bool single = set_if_absent("OPENBLAS_NUM_THREADS", "1");
-  if (!chosen && !single) return;  // the second time round, or the user's own choice
+  // The second time round, or the user's own choice.
+  if (!chosen && !single) return restore_name(arguments[0]);
   execv("/proc/self/exe", arguments);
 }
 

@@ -112,6 +112,17 @@ class Campaign(unittest.TestCase):
             stretch = 1.0 if now > saved else 1.2 * stretch
             saved = now
 
+    def test_is_found_by_its_name_while_it_runs(self):
+        out = self.fresh("named")
+        run = subprocess.Popen([PALPATE, "precompute", self.case, "--out", out], stdout=subprocess.DEVNULL,
+                               stderr=subprocess.DEVNULL)
+        while not (out / "curves.journal").exists() and run.poll() is None:
+            time.sleep(0.001)
+        name = Path(f"/proc/{run.pid}/comm").read_text().strip()
+        run.kill()
+        run.wait()
+        self.assertEqual(name, Path(PALPATE).name)
+
     def test_a_full_disk_ends_in_one_line_and_the_run_can_go_on(self):
         out = self.fresh("full")
         limit = 12000  # bytes a file may have: a few sites of the journal
