@@ -39,6 +39,7 @@ struct RunOptions {
   std::vector<double> at_mm{0, 0, 0};
   std::optional<double> watchdog, max_force;
   double wake_early_us = 0;
+  std::optional<double> tank_cap_mj;
   std::optional<double> friction;  ///< none: that of the certificate
   bool list = false, uncertified = false, strict = false;
 };
@@ -134,6 +135,7 @@ void enter_options(RunOptions& options) {
   live.contact.friction = options.friction.value_or(0);
   for (std::size_t i = 0; i < 3; ++i) live.pose.position[i] = 1e-3 * options.at_mm[i];
   live.loop.wake_early = 1e-6 * options.wake_early_us;
+  if (options.tank_cap_mj) live.contact.tank_cap = 1e-3 * *options.tank_cap_mj;
   if (options.watchdog) live.safety.watchdog = *options.watchdog;
   if (options.max_force) live.safety.max_force = *options.max_force;
   require_within_limits(live);
@@ -220,6 +222,9 @@ void add_loop_options(CLI::App& command, RunOptions& o) {
   command.add_option("--max-force", o.max_force,
                      "N, largest commanded force (default: the continuous, or else the peak force "
                      "of the profile)");
+  command.add_option("--tank-cap-mj", o.tank_cap_mj,
+                     "mJ, cap of the energy tank, which lets a slide use what friction has taken; "
+                     "0: none (default: 5)");
   command.add_option("--max-speed", o.live.safety.max_speed,
                      "m/s, speed of the device beyond which the force is switched off");
   command.add_option("--ramp", o.live.safety.ramp, "s, duration of the force ramp at the start");

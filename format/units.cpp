@@ -40,6 +40,7 @@ constexpr std::array kFoundationStiffness{Unit{"kPa/mm", 1e6}, Unit{"N/mm^3", 1e
                                           Unit{"N/m^3", 1}};
 constexpr std::array kAcceleration{Unit{"m/s^2", 1}};
 constexpr std::array kDensity{Unit{"g/cm^3", 1e3}, Unit{"kg/m^3", 1}};
+constexpr std::array kEnergy{Unit{"mJ", 1e-3}, Unit{"uJ", 1e-6}, Unit{"J", 1}};
 constexpr std::array kRatio{Unit{"1", 1}, Unit{"-", 1}, Unit{"%", 1e-2}, Unit{"mm/mm", 1},
                             Unit{"m/m", 1}};
 
@@ -81,6 +82,8 @@ Row row_of(Dimension dimension) {
       return all_in_cases("stiffness per area", kFoundationStiffness);
     case Dimension::Acceleration:
       return all_in_cases("acceleration", kAcceleration);
+    case Dimension::Energy:
+      return all_in_cases("energy", kEnergy);
     case Dimension::Density:
       return all_in_cases("density", kDensity);
     case Dimension::Ratio:

@@ -25,6 +25,7 @@ enum class Dimension {
   FoundationStiffness,
   Acceleration,
   Density,
+  Energy,
   Ratio
 };
 

@@ -82,6 +82,7 @@ struct SimulateSection {
   Vec3 from{};                  ///< m, of a path between two points
   Vec3 to{};                    ///< m
   double slide_speed = kAuto;   ///< m/s
+  double tank_cap = kAuto;      ///< J
 };
 
 /// What is kept of the displacement of the skin, for deformation.pdef.

@@ -23,6 +23,7 @@ constexpr double kAnyForce = std::numeric_limits<double>::infinity();
 constexpr OptionRange kRate{"--rate", "Hz", 1, 100000};
 constexpr OptionRange kDuration{"--duration", "s", 0, 1e6};
 constexpr OptionRange kFriction{"--friction", "", 0, 10};
+constexpr OptionRange kTankCap{"--tank-cap-mj", "mJ", 0, 1e9};
 constexpr OptionRange kMaxForce{"--max-force", "N", 0, kAnyForce, true};
 constexpr OptionRange kMaxSpeed{"--max-speed", "m/s", 0, 100, true};
 constexpr OptionRange kRamp{"--ramp", "s", 0, 60};
@@ -54,6 +55,7 @@ void require_within_limits(const LiveSettings& live) {
   require_wake_within(live.loop);
   require(kDuration, live.duration);
   require(kFriction, live.contact.friction);
+  require(kTankCap, 1e3 * live.contact.tank_cap);
   require(kMaxForce, live.safety.max_force);
   require(kMaxSpeed, live.safety.max_speed);
   require(kRamp, live.safety.ramp);

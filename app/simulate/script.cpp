@@ -8,6 +8,7 @@
 #include "format/error.hpp"
 #include "format/numbers.hpp"
 #include "format/to_index.hpp"
+#include "runtime/contact_state.hpp"
 #include "runtime/response_curve.hpp"
 
 namespace palpate::app {
@@ -27,10 +28,11 @@ constexpr double kFrictionOverForce = 0.01;
 constexpr double kHandOverStiffness = 4;
 constexpr double kHandDampingOverStiffness = 0.1;  // s
 
-/// Typical stiffness and force of the responses at their last knots.
+/// Typical stiffness, force and energy of the responses at their last knots.
 struct Typical {
   double stiffness = 0;  ///< N/m, median secant
   double force = 0;      ///< N, median
+  double energy = 0;     ///< J, median
 };
 
 double median(std::vector<double> values) {
@@ -40,14 +42,15 @@ double median(std::vector<double> values) {
 }
 
 Typical typical_of(const Library& library) {
-  std::vector<double> stiffness, force;
+  std::vector<double> stiffness, force, energy;
   for (const NodeResponse& node : library.responses) {
     if (node.status == ResponseStatus::Hole) continue;
     const runtime::CompiledCurve curve(node.normal);
     force.push_back(curve.force(curve.last_knot()));
     stiffness.push_back(force.back() / curve.last_knot());
+    energy.push_back(curve.evaluate(curve.last_knot()).energy);
   }
-  return {median(std::move(stiffness)), median(std::move(force))};
+  return {median(std::move(stiffness)), median(std::move(force)), median(std::move(energy))};
 }
 
 /// Diagonal of the box around the triangles whose corners all have a response, m.
@@ -100,7 +103,9 @@ SimulateSection settled(SimulateSection script, const Library& library) {
   const double slide =
       script.path == SlidePath::Between ? norm(script.to - script.from) : script.slide_length;
   derive(script.slide_speed, kPeakOverMean * slide / kSlideTime);
-  derive_device(script.device, typical_of(library));
+  const Typical body = typical_of(library);
+  derive(script.tank_cap, std::max(runtime::ContactSettings{}.tank_cap, body.energy));
+  derive_device(script.device, body);
   return script;
 }
 

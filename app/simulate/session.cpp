@@ -31,27 +31,27 @@ LibraryHandle load(const std::filesystem::path& file) {
   return {library, &palpate_library_destroy};
 }
 
-palpate_settings chosen_settings(double lipschitz_bound) {
+palpate_settings chosen_settings(const SimulateSection& script, double lipschitz_bound) {
   palpate_settings settings{};
   palpate_settings_default(&settings);
+  settings.tank_cap = script.tank_cap;
   settings.lipschitz_bound = lipschitz_bound;
   return settings;
 }
 
-StateHandle create(const palpate_library* library, double lipschitz_bound,
+StateHandle create(const palpate_library* library, const palpate_settings& settings,
                    const std::filesystem::path& file) {
-  const palpate_settings settings = chosen_settings(lipschitz_bound);
   palpate_state* state = nullptr;
   check(palpate_state_create(library, &settings, &state), file);
   return {state, &palpate_state_destroy};
 }
 
 /// The settings of the state.
-SessionSettings settings_of(const palpate_library* library, double lipschitz_bound) {
-  const palpate_settings chosen = chosen_settings(lipschitz_bound);
+SessionSettings settings_of(const palpate_library* library, const palpate_settings& chosen) {
+  const double bound = chosen.lipschitz_bound;
   SessionSettings settings;
   settings.tank_cap = chosen.tank_cap;
-  settings.lipschitz_bound = lipschitz_bound > 0 ? lipschitz_bound : library->lipschitz_bound;
+  settings.lipschitz_bound = bound > 0 ? bound : library->lipschitz_bound;
   return settings;
 }
 
@@ -91,18 +91,20 @@ struct ScriptedSession::State {
         double lipschitz_bound)
       : script(settled(given, library)),
         handle(load(file)),
-        state(create(handle.get(), lipschitz_bound, file)),
+        settings(chosen_settings(script, lipschitz_bound)),
+        state(create(handle.get(), settings, file)),
         hand(scripted_path(script, library)),
         device(script.device) {
     heading.device = "simulated";
     heading.library_sha256 = sha256_of_file(file);
     heading.rate = script.rate;
     heading.friction = library.certificate.friction;
-    heading.settings = settings_of(handle.get(), lipschitz_bound);
+    heading.settings = settings_of(handle.get(), settings);
   }
 
   SimulateSection script;
   LibraryHandle handle;
+  palpate_settings settings;
   StateHandle state;
   HandPath hand;
   runtime::SimulatedDevice device;

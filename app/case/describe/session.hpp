@@ -86,6 +86,12 @@ void describe(V& v, SimulateSection& s) {
        "rest between press and slide; `auto`: none, or where the tissue relaxes twice its longest "
        "time, at most 5 s",
        kOptional, kNotNegative});
+  v.quantity_or_auto(
+      s.tank_cap, Dimension::Energy,
+      {"tank_cap",
+       "cap of the energy tank, which lets a slide use what friction has taken; 0: none; `auto`: "
+       "5 mJ, or the median energy of the responses at their deepest sample where that is more",
+       kOptional, kNotNegative});
   describe_slide(v, s);
 }
 

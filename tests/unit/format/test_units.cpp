@@ -17,7 +17,7 @@ constexpr Dimension kAll[] = {
     Dimension::Force,        Dimension::Frequency,  Dimension::Mass,
     Dimension::Damping,      Dimension::Stiffness,  Dimension::Speed,
     Dimension::Time,         Dimension::Compliance, Dimension::FoundationStiffness,
-    Dimension::Acceleration, Dimension::Density};
+    Dimension::Acceleration, Dimension::Density,    Dimension::Energy};
 
 /// Values by the definitions of the units and the prefixes: an inch is 25.4 mm, a pound force
 /// 0.45359237 kg at 9.80665 m/s^2.
@@ -48,6 +48,9 @@ const std::map<std::string, double> kDefined{{"m", 1},
                                              {"kHz", 1e3},
                                              {"kg", 1},
                                              {"g", 1e-3},
+                                             {"J", 1},
+                                             {"mJ", 1e-3},
+                                             {"uJ", 1e-6},
                                              {"N s/m", 1},
                                              {"N/m", 1},
                                              {"m/s", 1},

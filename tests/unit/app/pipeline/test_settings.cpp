@@ -98,8 +98,8 @@ class SettingsText {
     add(static_cast<int>(s.path));
     add(s.from);
     add(s.to);
-    add(s.rate, s.press_depth, s.press_speed, s.hold, s.slide_length, s.slide_speed, s.device.mass,
-        s.device.damping, s.device.coulomb_friction, s.device.hand_stiffness,
+    add(s.rate, s.press_depth, s.press_speed, s.hold, s.slide_length, s.slide_speed, s.tank_cap,
+        s.device.mass, s.device.damping, s.device.coulomb_friction, s.device.hand_stiffness,
         s.device.hand_damping);
     add(c.output.folder);
   }

@@ -55,6 +55,17 @@ TEST(Script, HoldsWhereTheTissueRelaxes) {
   EXPECT_DOUBLE_EQ(settled({}, test::relaxing(plate_of(1), {0.1, 40}, true)).hold, 5);
 }
 
+TEST(Script, HasATankThatGrowsWithTheEnergyOfAPress) {
+  // Twice as large in every length, a wall of the same tissue stores eight times the energy.
+  const double ten = settled({}, plate_of(10)).tank_cap;
+  EXPECT_GT(ten, 5e-3);
+  EXPECT_NEAR(settled({}, plate_of(20)).tank_cap, 8 * ten, 1e-5 * ten);
+  EXPECT_EQ(settled({}, plate_of(0.1)).tank_cap, 5e-3);
+  SimulateSection given;
+  given.tank_cap = 0;
+  EXPECT_EQ(settled(given, plate_of(10)).tank_cap, 0);
+}
+
 TEST(Script, RefusesALibraryWithoutResponses) {
   Library library = plate_of(1);
   for (NodeResponse& node : library.responses) node.status = ResponseStatus::Hole;

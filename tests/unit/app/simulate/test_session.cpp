@@ -95,12 +95,13 @@ TEST_F(Session, IsTheSameEveryTime) {
 }
 
 TEST_F(Session, IsHeadedByWhatItsForcesDependOn) {
+  script_.tank_cap = 2e-3;
   const RecordingHeading heading = ScriptedSession(file_, library_, script_, 5000).heading();
   EXPECT_EQ(heading.library_sha256, sha256_of_file(file_));
   EXPECT_EQ(heading.rate, script_.rate);
   EXPECT_EQ(heading.friction, 0.3);
   EXPECT_EQ(heading.settings.lipschitz_bound, 5000);
-  EXPECT_GT(heading.settings.tank_cap, 0);
+  EXPECT_EQ(heading.settings.tank_cap, 2e-3);
 }
 
 TEST_F(Session, RefusesALibraryThatIsNotThere) {
