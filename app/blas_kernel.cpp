@@ -31,6 +31,7 @@ bool set_if_absent(const char* name, const char* value) {
 /// The system calls a program "exe" that was started as /proc/self/exe; `top` and `pkill` shall
 /// find it by the name that it was given.
 void restore_name(const char* given) {
+  if (given == nullptr) return;
   const char* folder_end = std::strrchr(given, '/');
   pthread_setname_np(pthread_self(), folder_end == nullptr ? given : folder_end + 1);
 }

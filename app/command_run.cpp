@@ -222,7 +222,7 @@ void add_loop_options(CLI::App& command, RunOptions& o) {
   command.add_option("--max-force", o.max_force,
                      "N, largest commanded force (default: the continuous, or else the peak force "
                      "of the profile)");
-  command.add_option("--tank-cap-mj", o.tank_cap_mj,
+  command.add_option("--tank-cap-mJ", o.tank_cap_mj,
                      "mJ, cap of the energy tank, which lets a slide use what friction has taken; "
                      "0: none (default: 5)");
   command.add_option("--max-speed", o.live.safety.max_speed,

@@ -23,7 +23,7 @@ constexpr double kAnyForce = std::numeric_limits<double>::infinity();
 constexpr OptionRange kRate{"--rate", "Hz", 1, 100000};
 constexpr OptionRange kDuration{"--duration", "s", 0, 1e6};
 constexpr OptionRange kFriction{"--friction", "", 0, 10};
-constexpr OptionRange kTankCap{"--tank-cap-mj", "mJ", 0, 1e9};
+constexpr OptionRange kTankCap{"--tank-cap-mJ", "mJ", 0, 1e9};
 constexpr OptionRange kMaxForce{"--max-force", "N", 0, kAnyForce, true};
 constexpr OptionRange kMaxSpeed{"--max-speed", "m/s", 0, 100, true};
 constexpr OptionRange kRamp{"--ramp", "s", 0, 60};
