@@ -162,6 +162,7 @@ OwnSolution press_tool(const Body& body, fem::CampaignSettings settings, std::in
   if (lateral) {
     settings.indentation.lateral_depths = {settings.indentation.depth};
     settings.indentation.azimuths.resize(1);
+    settings.indentation.drag_across = false;
   }
   fem::CampaignReport report;
   const Curves curves = fem::run_campaign(body, settings, report);

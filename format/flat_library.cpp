@@ -171,7 +171,9 @@ void get_responses(const FlatReader& reader, Library& library) {
 }
 
 std::uint32_t version_of(const Library& library) {
-  if (library.kind == ResponseKind::Coupled || library.leans()) return kLatestFlatVersion;
+  const bool coupled = library.kind == ResponseKind::Coupled, leans = library.leans();
+  if (coupled && leans) return kLatestFlatVersion;
+  if (coupled || leans) return kGrippingFlatVersion;
   return library.relaxes() ? kRelaxingFlatVersion : kFlatVersion;
 }
 
@@ -218,8 +220,10 @@ Library read_flat_library(std::string_view bytes, const std::filesystem::path& f
   library.tool_shape = words[1];
   const auto coupled = reader.array<std::uint8_t>("/coupled", 1);
   checks.numbers("/coupled", coupled, rules::kFlag);
-  if (coupled.front() == 1 && reader.version() < kLatestFlatVersion)
+  if (coupled.front() == 1 && reader.version() < kGrippingFlatVersion)
     reader.fail("/coupled", kFormerCoupled);
+  if (coupled.front() == 1 && reader.version() < kLatestFlatVersion && reader.has("/response/lean"))
+    reader.fail("/response/lean", kFormerLean);
   if (coupled.front() == 1) library.kind = ResponseKind::Coupled;
   library.tool_radius = reader.number("/tool_radius");
   library.positions = reader.array<Vec3>("/surface/position");
@@ -235,7 +239,7 @@ Library read_flat_library(std::string_view bytes, const std::filesystem::path& f
     set_relaxation_fractions(fractions, library);
   }
   if (reader.has("/response/lean"))
-    set_leans(checks, reader.array<std::array<float, 3>>("/response/lean"), library.responses);
+    set_leans(checks, reader.array<std::array<float, 3>>("/response/lean"), library);
   library.provenance = get_provenance(reader);
   check_library(checks, library);
   return library;

@@ -4,7 +4,19 @@
 #include <algorithm>
 #include <cmath>
 
+#include "format/numbers.hpp"
+
 namespace palpate {
+
+double CouplingCurve::largest() const {
+  if (curve.slope.empty()) return static_cast<double>(base);
+  if (curve.slope.back() > 0) return kInfinity;
+  double w = static_cast<double>(base);
+  for (std::size_t k = 1; k < curve.knot.size(); ++k)
+    w += 0.5 * static_cast<double>(curve.knot[k] - curve.knot[k - 1]) *
+         static_cast<double>(curve.slope[k - 1] + curve.slope[k]);
+  return w;
+}
 
 bool Library::leans() const {
   return std::any_of(responses.begin(), responses.end(),

@@ -26,6 +26,9 @@ inline constexpr int kLibrarySchema = 3;
 inline constexpr int kRelaxingLibrarySchema = 5;
 /// Responses that are coupled or lean, elastic or relaxing.
 inline constexpr int kGrippingLibrarySchema = 6;
+/// The same that are coupled and lean: the lean grows with the contact. Where schema 6 says both,
+/// the lean was that of another model. Refused.
+inline constexpr int kLeaningLibrarySchema = 7;
 /// Coupled responses with a potential of depth and lateral deflection together, which this runtime
 /// does not render; so are those of schema 5 that say that they are coupled. Refused.
 inline constexpr int kFormerCoupledSchema = 4;
@@ -61,9 +64,11 @@ enum class ResponseKind : std::uint8_t {
 struct CouplingCurve {
   float base = 1;       ///< w(0)
   ResponseCurve curve;  ///< knots in m, slopes in 1/m; empty in a decoupled library
+
+  double largest() const;  ///< w at any depth; infinite where it grows without end
 };
 
-/// Largest length of the lean of a node.
+/// Largest length of the lean of a node at any depth.
 inline constexpr double kMostLean = 0.5;
 
 /// Largest number of relaxation times of a library.
@@ -80,7 +85,8 @@ struct NodeResponse {
   /// time of the library. Empty at a hole.
   std::vector<float> relaxation{};
   /// sigma, 1: the lateral deflection that a straight press makes, over its depth, across the
-  /// press direction. The lateral force against it is the force by which a press leans.
+  /// press direction. The lateral force against it is the force by which a press leans. In a
+  /// coupled library it is w sigma, as the lateral response is w h.
   std::array<float, 3> lean{};
   /// N, largest CurveSample::mesh_error of the curves that the normal response stands for: what the
   /// mesh of the campaign leaves, beside the error of the fit. NaN when unknown. Not in flat files.
@@ -176,7 +182,9 @@ struct Library {
 
 /// The schema of its library.h5.
 inline int schema_of(const Library& library) {
-  if (library.kind == ResponseKind::Coupled || library.leans()) return kGrippingLibrarySchema;
+  const bool coupled = library.kind == ResponseKind::Coupled, leans = library.leans();
+  if (coupled && leans) return kLeaningLibrarySchema;
+  if (coupled || leans) return kGrippingLibrarySchema;
   return library.relaxes() ? kRelaxingLibrarySchema : kLibrarySchema;
 }
 

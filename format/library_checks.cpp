@@ -51,13 +51,20 @@ void check_enforceable(const Checks& checks, const Certificate& c) {
 }
 
 /// A length that is NaN fits no limit.
-void check_leans(const Checks& checks, const std::vector<std::array<float, 3>>& leans) {
-  for (std::size_t v = 0; v < leans.size(); ++v) {
-    const auto& [x, y, z] = leans[v];
+void check_leans(const Checks& checks, const Library& library) {
+  std::size_t row = 0;
+  for (const NodeResponse& node : library.responses) {
+    if (node.status == ResponseStatus::Hole) continue;
+    const auto& [x, y, z] = node.lean;
     const double length =
         std::hypot(static_cast<double>(x), static_cast<double>(y), static_cast<double>(z));
-    if (!(length <= kMostLean))
-      checks.fail_row("/response/lean", v, "is longer than " + number_text(kMostLean));
+    const bool grows = library.kind == ResponseKind::Coupled && length > 0;
+    const double longest = grows ? node.coupling.largest() * length : length;
+    if (!(longest <= kMostLean))
+      checks.fail_row("/response/lean", row,
+                      (grows ? "is, times the largest w, longer than " : "is longer than ") +
+                          number_text(kMostLean));
+    ++row;
   }
 }
 
@@ -132,8 +139,8 @@ std::vector<std::array<float, 3>> leans(const std::vector<NodeResponse>& respons
 }
 
 void set_leans(const Checks& checks, const std::vector<std::array<float, 3>>& leans,
-               std::vector<NodeResponse>& responses) {
-  check_leans(checks, leans);
+               Library& library) {
+  std::vector<NodeResponse>& responses = library.responses;
   const auto not_a_hole = [](const NodeResponse& r) { return r.status != ResponseStatus::Hole; };
   checks.same_size(
       "/response/lean", leans.size(),
@@ -141,6 +148,7 @@ void set_leans(const Checks& checks, const std::vector<std::array<float, 3>>& le
   auto lean = leans.begin();
   for (NodeResponse& response : responses)
     if (not_a_hole(response)) response.lean = *lean++;
+  check_leans(checks, library);
 }
 
 std::vector<float> relaxation_fractions(const Library& library) {
@@ -233,7 +241,7 @@ void check_for_writing(const Checks& checks, const Library& library) {
     checks.numbers("/response/coupling_base", coupling_bases(library.responses), rules::kPositive);
   }
   if (library.relaxes()) check_relaxation(checks, library, relaxation_fractions(library));
-  check_leans(checks, leans(library.responses));
+  check_leans(checks, library);
   check_certificate(checks, library);
   check_provenance(checks, library.provenance);
 }

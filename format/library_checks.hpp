@@ -41,11 +41,15 @@ std::vector<float> coupling_bases(const std::vector<NodeResponse>& responses);
 inline constexpr const char* kFormerCoupled =
     "has coupled responses that an earlier palpate has fitted and certified for another model";
 
+/// What is wrong with coupled responses that lean as an earlier palpate has fitted them.
+inline constexpr const char* kFormerLean =
+    "has coupled responses with a lean that an earlier palpate has fitted for another model";
+
 /// The lean of each node with a response.
 std::vector<std::array<float, 3>> leans(const std::vector<NodeResponse>& responses);
-/// Checks them, and gives them to the nodes.
+/// Checks them, and gives them to the nodes. Coupled responses must have their w already.
 void set_leans(const Checks& checks, const std::vector<std::array<float, 3>>& leans,
-               std::vector<NodeResponse>& responses);
+               Library& library);
 
 /// g_i of every node, row by row: V times B numbers, zero at a hole.
 std::vector<float> relaxation_fractions(const Library& library);

@@ -53,8 +53,8 @@ void read_relaxation(const hdf5::Reader& reader, Library& library) {
   set_relaxation_fractions(fractions, library);
 }
 
-void read_leans(const hdf5::Reader& reader, std::vector<NodeResponse>& responses) {
-  set_leans(Checks(reader), reader.dataset<std::array<float, 3>>("/response/lean", "1"), responses);
+void read_leans(const hdf5::Reader& reader, Library& library) {
+  set_leans(Checks(reader), reader.dataset<std::array<float, 3>>("/response/lean", "1"), library);
 }
 
 void write_surface(hdf5::Writer& writer, const Library& library) {
@@ -113,7 +113,7 @@ void write_responses(hdf5::Writer& writer, const Library& library) {
     writer.dataset("/response/lean", leans(library.responses),
                    {"1",
                     "Lateral deflection of a straight press over its depth, of each vertex with a "
-                    "response."});
+                    "response; of coupled responses at w = 1."});
   if (library.kind == ResponseKind::Decoupled) return;
   writer.dataset("/response/coupling_base", coupling_bases(library.responses),
                  {"1", "w(0) of each vertex; 1 at a hole."});
@@ -213,7 +213,7 @@ void write_library(const std::filesystem::path& path, const Library& library) {
              "A response library: surface, responses, certificate.");
   const int schema = schema_of(library);
   if (schema >= kRelaxingLibrarySchema) writer.set_integer("/", "coupled", coupled ? 1 : 0);
-  if (schema == kGrippingLibrarySchema) {
+  if (schema >= kGrippingLibrarySchema) {
     writer.set_integer("/", "relaxes", library.relaxes() ? 1 : 0);
     writer.set_integer("/", "leans", library.leans() ? 1 : 0);
   }
@@ -234,12 +234,13 @@ Library read_hdf5_library(const std::filesystem::path& path) {
   Library library;
   const std::int64_t schema = reader.require_artifact(
       kLibraryArtifact, {kFirstLibrarySchema, kLibrarySchema, kFormerCoupledSchema,
-                         kRelaxingLibrarySchema, kGrippingLibrarySchema});
-  const bool said = schema == kGrippingLibrarySchema;
+                         kRelaxingLibrarySchema, kGrippingLibrarySchema, kLeaningLibrarySchema});
+  const bool said = schema >= kGrippingLibrarySchema;
   const auto says = [&](const char* name) { return reader.integer("/", name) == 1; };
   const bool relaxes = said ? says("relaxes") : schema == kRelaxingLibrarySchema;
   const bool coupled = schema >= kRelaxingLibrarySchema && says("coupled");
   if (schema == kFormerCoupledSchema || (coupled && !said)) reader.fail("/", kFormerCoupled);
+  if (schema == kGrippingLibrarySchema && coupled && says("leans")) reader.fail("/", kFormerLean);
   if (coupled) library.kind = ResponseKind::Coupled;
   library.name = reader.text("/", "name");
   library.tool_shape = reader.text("/", "tool_shape");
@@ -253,7 +254,7 @@ Library read_hdf5_library(const std::filesystem::path& path) {
   read_flat(reader, "/response/lateral_", library.responses, lateral_of);
   if (library.kind == ResponseKind::Coupled) read_coupling(reader, library.responses);
   if (relaxes) read_relaxation(reader, library);
-  if (said && says("leans")) read_leans(reader, library.responses);
+  if (said && says("leans")) read_leans(reader, library);
   library.certificate = read_certificate(reader, certificate_names(schema));
   library.provenance = read_provenance(reader);
   check_library(Checks(reader), library);

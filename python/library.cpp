@@ -109,10 +109,9 @@ void define_responses(py::module_& module) {
           "Library.relaxation_times.")
       .def_property_readonly(
           "lean", [](const NodeResponse& node) { return py::array_t<float>(3, node.lean.data()); },
-          "(3,) float32, without unit: lateral deflection of a straight press over its depth, "
-          "across "
-          "the\n"
-          "press direction. Zero where a press does not lean.")
+          "(3,) float32, without unit: lateral deflection of a straight press over its depth,\n"
+          "across the press direction; of coupled responses where w is 1, as it grows with w.\n"
+          "Zero where a press does not lean.")
       .def_readonly("normal_error", &NodeResponse::normal_error,
                     "N, largest |fit - sample| of f^z.")
       .def_readonly("lateral_error", &NodeResponse::lateral_error, "N, the same of f^r.");

@@ -65,19 +65,23 @@ void LocalModel::slip(const LateralSlip& by, Deflection& d, LocalResponse& at,
 
 LocalModel LocalModel::moved_to(const SurfacePoint& point, ToolPieces& pieces) const noexcept {
   LocalModel there(*surface_, point, offset_, grip_);
-  if (!coupled()) return there;
+  if (!coupled()) {
+    there.hold(there.response_.natural());
+    return there;
+  }
   there.grip_.micro_slip = grip_.micro_slip - dot(grip_.micro_slip, there.n_) * there.n_;
-  there.weights_ = grip_.scale * there.response_.lateral_weights(grip_.depth, pieces.elastic);
+  there.hold(grip_.scale * there.response_.lateral_weights(grip_.depth, pieces.elastic));
   return there;
 }
 
 void LocalModel::renew_grip(Deflection& d, LocalResponse& at, ToolPieces& pieces) noexcept {
   const double depth = std::max(d.depth, 0.0);
   if (!coupled() || depth == grip_.depth) return;
-  const Vec3 before = weights_;
-  weights_ = response_.lateral_weights(depth, pieces.elastic);
+  const Vec3 before = weights_, sheared = shear(d);
+  hold(response_.lateral_weights(depth, pieces.elastic));
   if (!(d.lateral > 0)) {
     grip_.depth = depth;
+    take_shear(sheared - shear(d));
     return;
   }
   Deflection renewed = d;
@@ -88,11 +92,11 @@ void LocalModel::renew_grip(Deflection& d, LocalResponse& at, ToolPieces& pieces
   LocalResponse response;
   respond(renewed, pieces, response);
   if (response.energy > at.energy) {
-    weights_ = before;
+    hold(before);
     return;
   }
   grip_.depth = depth;
-  add_micro_slip((d.lateral - renewed.lateral) * d.tangent);
+  add_micro_slip((d.lateral - renewed.lateral) * d.tangent + (sheared - shear(d)));
   d = renewed;
   at = response;
 }
@@ -112,14 +116,17 @@ GripChange LocalModel::grip_change(const Deflection& d, ToolPieces& pieces) cons
 
 void LocalModel::renew_grip(const GripChange& change, Deflection& d, LocalResponse& at,
                             ToolPieces& pieces, const Relaxation& memories) noexcept {
-  if (change.scale < 1) shrink_grip(change.scale, at);
+  if (change.scale < 1) shrink_grip(change.scale, d, at);
   if (change.grows) grow_grip(change.wide, d, at, pieces, memories);
 }
 
-/// Every lateral force, and what is stored for it, falls by a factor.
-void LocalModel::shrink_grip(double scale, LocalResponse& at) noexcept {
+/// Every lateral force, and what is stored for it, falls by a factor; so does the lean.
+void LocalModel::shrink_grip(double scale, const Deflection& d, LocalResponse& at) noexcept {
+  const Vec3 sheared = shear(d);
   weights_ = scale * weights_;
+  lean_ = scale * lean_;
   grip_.scale *= scale;
+  take_shear(sheared - shear(d));
   const Vec3 lateral = at.force - dot(at.force, n_) * n_;
   at.energy = at.relaxed.energy + scale * (at.energy - at.relaxed.energy);
   at.force = at.normal_force * n_ + leaning(scale * lateral);
@@ -135,9 +142,9 @@ void LocalModel::shrink_grip(double scale, LocalResponse& at) noexcept {
 /// Every vertex is held by its w, and every lateral force stays: q and the p_i become shorter.
 void LocalModel::grow_grip(const Vec3& wide, Deflection& d, LocalResponse& at, ToolPieces& pieces,
                            const Relaxation& memories) noexcept {
-  const Vec3 held = weights_;
+  const Vec3 held = weights_, sheared = shear(d);
   const LateralMemory before = memory_->lateral;
-  weights_ = wide;
+  hold(wide);
   memory_->lateral = memories.held_at(place(), before);
   Deflection renewed = d;
   if (d.lateral > 0) {
@@ -148,15 +155,20 @@ void LocalModel::grow_grip(const Vec3& wide, Deflection& d, LocalResponse& at, T
   LocalResponse response;
   respond(renewed, pieces, response);
   if (response.energy > at.energy) {
-    weights_ = held;
+    hold(held);
     memory_->lateral = before;
     return;
   }
   grip_.depth = std::max(d.depth, 0.0);
   grip_.scale = 1;
-  add_micro_slip((d.lateral - renewed.lateral) * d.tangent);
+  add_micro_slip((d.lateral - renewed.lateral) * d.tangent + (sheared - shear(d)));
   d = renewed;
   at = response;
+}
+
+/// Adds to e what the shear has lost by a change of the lean, so that q stays.
+void LocalModel::take_shear(const Vec3& by) noexcept {
+  if (lean_ != Vec3{} || by != Vec3{}) add_micro_slip(by);
 }
 
 /// Adds to e, and to s what is too much.
@@ -181,11 +193,11 @@ double LocalModel::energy_slope(const Deflection& at, const Vec3& d,
     const double rate = dot(e.gradient[l], d);
     const NodeCurves& node = response_.node(l);
     turn = turn + rate * surface_->inward(e, l);
-    const Vec3 lean = surface_->lean(e, l);
-    lean_change = lean_change + rate * lean;
-    lean_along_normal += point_.natural[l] * dot(lean, n_);
     const double w =
         node.coupled() ? grip_.scale * node.coupling().evaluate_from_start(grip_.depth).force : 1.0;
+    const Vec3 lean = w * surface_->lean(e, l);
+    lean_change = lean_change + rate * lean;
+    lean_along_normal += point_.natural[l] * dot(lean, n_);
     change_of_curves += rate * (node.normal().evaluate(at.depth).energy +
                                 w * node.lateral().evaluate(at.lateral).energy);
   }
@@ -194,8 +206,9 @@ double LocalModel::energy_slope(const Deflection& at, const Vec3& d,
   const double depth_rate = dot(lateral_displacement(at) + lateral_offset_, turn) - dot(n_, d);
   const double lean_rate = dot(at.tangent, lean_change - lean_along_normal * turn);
   return change_of_curves + dot(response.force, n_) * depth_rate -
-         response.lateral_force * (dot(at.tangent, anchor_rate) +
-                                   at.geometric * dot(at.tangent, turn) + at.depth * lean_rate);
+         response.lateral_force *
+             (dot(at.tangent, anchor_rate) + at.geometric * dot(at.tangent, turn) +
+              (at.depth - 0.5 * grip_.depth) * lean_rate);
 }
 
 }  // namespace palpate::runtime

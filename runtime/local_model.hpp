@@ -22,7 +22,7 @@ class Relaxation;
 struct Deflection {
   double depth = 0;      ///< z = geometric - d0, m
   double geometric = 0;  ///< n . (x - c), m: depth of the tip below the surface at rest
-  double lateral = 0;    ///< rho = |q| >= 0, m, q the lateral part minus s + sigma z
+  double lateral = 0;    ///< rho = |q| >= 0, m, q the lateral part minus s and the shear
   Vec3 tangent{};        ///< t = q/rho, unit; zero when rho = 0
 };
 
@@ -47,7 +47,7 @@ struct LocalResponse {
 /// How the contact holds the tissue, of coupled responses: its width is that at a depth, and what
 /// has come into contact since holds tissue that was sheared by then.
 struct Grip {
-  double depth = 0;   ///< z_w >= 0, m: the lateral response is scale w(z_w) h
+  double depth = 0;   ///< z_w >= 0, m: lateral response and lean are those of scale w(z_w)
   Vec3 micro_slip{};  ///< e, m, across n: lateral deflection without force
   double scale = 1;   ///< below 1 only in tissue that relaxes
 };
@@ -72,24 +72,25 @@ struct LateralSlip {
   Vec3 part(double fraction) const noexcept { return (fraction * scale) * direction; }  ///< m
 };
 
-/// With c, n = n(c), the lean sigma = sigma(c), the offset d0 and the lateral offset s fixed, where
-/// s and sigma are across n:
+/// With c, n = n(c), the lean sigma, the offset d0 and the lateral offset s fixed, where s and
+/// sigma are across n:
 ///   r = x - c,  z = n . r - d0,  q = r - (n . r) n - s - sigma z,  rho = |q|,  t = q/rho,
 ///   f(x) = g(z) n + h(rho) (t - (t . sigma) n) = grad E(x),
 /// those of Mahvash & Hayward 2005, eqs. 26-32, for s = sigma = 0.
 /// s is slip that c has not followed; a = c + s, the anchor, is the position of c without that.
-/// sigma is how a straight press shears the tissue: beside a support its force leans.
-/// Coupled responses: E = sum n_l (G_l(z) + w_l(z_w) H_l(rho)) with q less e, and again f = grad E:
-/// the grip is fixed as well, and renew_grip() changes it. The Jacobian is A^T (g' n n^T + h' t t^T
-/// + (h/rho) b b^T) A with b = n x t and A = I - sigma n^T: its norm does not exceed the largest
-/// stored slope (times w) times |A|^2. Responses that relax have a memory, which is fixed as well:
-/// V of (R18) replaces G, and psi g replaces g in every equation above; H - M . q + K replaces H,
-/// and grad H - M replaces h t (R23). noexcept, allocation-free.
+/// sigma = sum n_l sigma_l is how a straight press shears the tissue: beside a support its force
+/// leans. Coupled responses: E = sum n_l (G_l(z) + w_l(z_w) H_l(rho)), sigma = sum n_l w_l(z_w)
+/// sigma_l, q = r - (n . r) n - s - e - sigma (z - z_w/2), and again f = grad E: the grip is fixed
+/// as well, and renew_grip() changes it. The Jacobian is A^T (g' n n^T + h' t t^T + (h/rho) b b^T)
+/// A with b = n x t and A = I - sigma n^T: its norm does not exceed the largest stored slope (times
+/// w) times |A|^2. Responses that relax have a memory, which is fixed as well: V of (R18) replaces
+/// G, and psi g replaces g in every equation above; H - M . q + K replaces H, and grad H - M
+/// replaces h t (R23). noexcept, allocation-free.
 class LocalModel {
  public:
   LocalModel(const Surface& surface, const SurfacePoint& point, double offset) noexcept
       : LocalModel(surface, point, offset, Grip{}) {
-    if (coupled()) weights_ = response_.lateral_weights(0);
+    hold(coupled() ? response_.lateral_weights(0) : response_.natural());
   }
   /// The same contact at another point, with its offset and its grip. s is zero, memory none.
   LocalModel moved_to(const SurfacePoint& point, ToolPieces& pieces) const noexcept;
@@ -99,15 +100,17 @@ class LocalModel {
     const Vec3 r = x - c_;
     d.geometric = dot(n_, r);
     d.depth = d.geometric - offset_;
-    const Vec3 lateral =
-        r - d.geometric * n_ - lateral_offset_ - d.depth * lean_ - grip_.micro_slip;
+    const Vec3 lateral = r - d.geometric * n_ - lateral_offset_ - shear(d) - grip_.micro_slip;
     d.lateral = norm(lateral);
     if (d.lateral > 0) d.tangent = (1.0 / d.lateral) * lateral;
     return d;
   }
-  /// q + sigma z + e, m: how far the tip is from the anchor, across n.
+  /// sigma (z - z_w/2), m: what a straight press shears, where half of it has come into contact
+  /// since. Of decoupled responses sigma z.
+  Vec3 shear(const Deflection& d) const noexcept { return (d.depth - 0.5 * grip_.depth) * lean_; }
+  /// q + e and the shear, m: how far the tip is from the anchor, across n.
   Vec3 lateral_displacement(const Deflection& d) const noexcept {
-    return d.lateral * d.tangent + d.depth * lean_ + grip_.micro_slip;
+    return d.lateral * d.tangent + shear(d) + grip_.micro_slip;
   }
   double lateral_distance(const Deflection& d) const noexcept {  ///< its length
     const bool is_q = lean_ == Vec3{} && grip_.micro_slip == Vec3{};
@@ -166,8 +169,8 @@ class LocalModel {
   /// As the contact shrinks, so does the lateral force. As it grows, the lateral force stays: what
   /// comes into contact holds tissue as it is [Mindlin & Deresiewicz 1953], and e takes the rest of
   /// q, up to kMostMicroSlip of the tool's radius; beyond it s does. Where E would rise, as a
-  /// lateral response that stiffens sharply lets it, the grip stays. The deflection and the
-  /// response are updated.
+  /// lateral response that stiffens sharply lets it, the grip stays. The lean grows and shrinks
+  /// with w, and q stays with it. The deflection and the response are updated.
   void renew_grip(Deflection& d, LocalResponse& at, ToolPieces& pieces) noexcept;
   /// What renewing the grip at the present depth does to that of coupled responses that relax.
   GripChange grip_change(const Deflection& d, ToolPieces& pieces) const noexcept;
@@ -178,7 +181,7 @@ class LocalModel {
   const Grip& grip() const noexcept { return grip_; }
   void set_grip(const Grip& grip) noexcept {
     grip_ = {grip.depth, grip.micro_slip - dot(grip.micro_slip, n_) * n_, grip.scale};
-    if (coupled()) weights_ = weights_of(grip_);
+    if (coupled()) hold(weights_of(grip_));
   }
   /// Weights of the three lateral responses with a grip, of coupled responses.
   Vec3 weights_of(const Grip& grip) const noexcept {
@@ -196,8 +199,9 @@ class LocalModel {
   ///   z' = (q + s + e + sigma z) . n' - n . d,
   ///   dE/ds = sum (grad n_l . d)(G_l + H_l) + (g - h (t . sigma)) z'
   ///           - h (t . a' + (z + d0)(t . n') + z (t . sigma')),
-  /// with H_l times w_l(z_w) where responses are coupled. In an ordinary slide the anchor moves
-  /// with c, a' = d; where c catches up with the anchor, a' = 0. Without memory.
+  /// with H_l and sigma_l times w_l(z_w), and z - z_w/2 beside sigma, where responses are coupled.
+  /// In an ordinary slide the anchor moves with c, a' = d; where c catches up with the anchor,
+  /// a' = 0. Without memory.
   double energy_slope(const Deflection& at, const Vec3& d, const Vec3& anchor_rate) const noexcept;
   double energy_slope(const Deflection& at, const Vec3& d) const noexcept {
     return energy_slope(at, d, d);
@@ -213,7 +217,7 @@ class LocalModel {
   /// Sets s such that q = 0 with the tip at x, where it is longer than a tolerance, m.
   void let_go(const Vec3& x, double tolerance) noexcept {
     const Deflection d = deflection(x);
-    if (d.lateral > tolerance) set_lateral_offset(x - c_ - d.depth * lean_);
+    if (d.lateral > tolerance) set_lateral_offset(x - c_ - shear(d));
   }
   /// Sets s to the part of the vector across n.
   void set_lateral_offset(const Vec3& s) noexcept { lateral_offset_ = s - dot(s, n_) * n_; }
@@ -241,14 +245,13 @@ class LocalModel {
   }
 
  private:
-  /// Without weights.
+  /// Without weights and lean.
   LocalModel(const Surface& surface, const SurfacePoint& point, double offset,
              const Grip& grip) noexcept
       : surface_(&surface),
         point_(point),
         c_(surface.position(point)),
         n_(surface.normal(point)),
-        lean_(surface.lean(point, n_)),
         response_(surface.response(point)),
         offset_(offset),
         grip_(grip) {}
@@ -286,8 +289,14 @@ class LocalModel {
   }
   /// A^T h t: the part of the force of a lateral force in the response coordinates, N.
   Vec3 leaning(const Vec3& lateral) const noexcept { return lateral - dot(lateral, lean_) * n_; }
+  /// Takes these weights W_l of the lateral responses, and the lean sum W_l sigma_l.
+  void hold(const Vec3& weights) noexcept {
+    if (coupled()) weights_ = weights;
+    if (surface_->leans()) lean_ = surface_->lean(surface_->element(point_.element), weights, n_);
+  }
+  void take_shear(const Vec3& by) noexcept;
   void add_micro_slip(const Vec3& by) noexcept;
-  void shrink_grip(double scale, LocalResponse& at) noexcept;
+  void shrink_grip(double scale, const Deflection& d, LocalResponse& at) noexcept;
   void grow_grip(const Vec3& wide, Deflection& d, LocalResponse& at, ToolPieces& pieces,
                  const Relaxation& memories) noexcept;
   double lateral_reached(const LocalResponse& at, double force, TipPieces& pieces) const noexcept;
@@ -316,7 +325,7 @@ class LocalModel {
   SurfacePoint point_;
   Vec3 c_;
   Vec3 n_;
-  Vec3 lean_;  ///< sigma
+  Vec3 lean_{};  ///< sigma
   InterpolatedResponse response_;
   double offset_;
   Vec3 lateral_offset_{};

@@ -119,12 +119,10 @@ class Surface {
   bool relaxes_alike() const noexcept { return relaxes_alike_; }
   double tool_radius() const noexcept { return tool_radius_; }                  ///< m
   double inverse_tool_radius() const noexcept { return inverse_tool_radius_; }  ///< 1/m, 0: none
-  /// sum n_l sigma_l, 1, across the normal n at the point; zero where no node leans.
-  Vec3 lean(const SurfacePoint& p, const Vec3& n) const noexcept {
-    if (!leans_) return {};
-    const Element& e = element(p.element);
-    const Vec3 sum =
-        p.natural[0] * lean(e, 0) + p.natural[1] * lean(e, 1) + p.natural[2] * lean(e, 2);
+  bool leans() const noexcept { return leans_; }  ///< whether a node does
+  /// sum W_l sigma_l in an element, 1, across the normal n.
+  Vec3 lean(const Element& e, const Vec3& weights, const Vec3& n) const noexcept {
+    const Vec3 sum = weights[0] * lean(e, 0) + weights[1] * lean(e, 1) + weights[2] * lean(e, 2);
     return sum - dot(sum, n) * n;
   }
   /// sigma of a vertex; zero where no node leans.

@@ -269,6 +269,7 @@ fem::CampaignSettings campaign_of_case() {
   fem::IndentationSettings& paths = settings.indentation;
   paths.tool.radius = paths.depth = paths.lateral_travel = kAuto;
   paths.lateral_depths.clear();
+  paths.drag_across = true;
   return settings;
 }
 

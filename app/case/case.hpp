@@ -101,10 +101,10 @@ fem::CampaignSettings campaign_of_case();
 
 /// The settings of every stage of the pipeline. Each key of a case file is bound to a field of the
 /// settings that a stage takes (app/case/describe/case.hpp), whose default is the default of the
-/// key, but for lengths: they are derived (app/case/lengths.hpp). What a case leaves out of these
-/// settings is set by app/pipeline/settings.hpp: the resolved paths, the list of supports without
-/// springs, the tool that the mesher checks for, the instantaneous law of a region with its sampled
-/// fibres, threads and memory.
+/// key, but for lengths, which are derived (app/case/lengths.hpp), and `drag_across`. What a case
+/// leaves out of these settings is set by app/pipeline/settings.hpp: the resolved paths, the list
+/// of supports without springs, the tool that the mesher checks for, the instantaneous law of a
+/// region with its sampled fibres, threads and memory.
 struct Case {
   std::string name;
   std::filesystem::path records;  ///< sidecar of a measured body; as written; empty: none

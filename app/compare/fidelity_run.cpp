@@ -31,13 +31,17 @@ namespace fs = std::filesystem;
 constexpr double kLateralDepths[] = {0.2, 0.6, 0.9};
 constexpr double kAzimuths[] = {50, 185};  // degrees; unusual in campaigns
 constexpr int kMinIncrements = 6;
-constexpr int kDirectFields = 6;  ///< depths at which the direct skin is kept
+/// A press that sticks takes as many increments or more: what touches during one slides until its
+/// end.
+constexpr int kStickingIncrements = 24;
+constexpr double kSameDepth = 1e-6;  // over the depth of the case
 
 fs::path direct_fields(const Workspace& space) {
   return space.out / "fidelity-fields";
 }
 
-/// Direct solutions: the paths of the case, at additional depths and other directions.
+/// Direct solutions: the paths of the case, at additional depths and other directions. The tool
+/// sticks, as its friction lets it.
 fem::CampaignSettings direct_settings(const Workspace& space, bool finer_mesh,
                                       const std::vector<fidelity::HoldOutPoint>& points) {
   fem::CampaignSettings settings = campaign_settings(space);
@@ -55,6 +59,11 @@ fem::CampaignSettings direct_settings(const Workspace& space, bool finer_mesh,
   for (const double degrees : kAzimuths)
     indentation.azimuths.push_back(degrees * std::numbers::pi / 180);
   indentation.lateral_increments = std::max(indentation.lateral_increments, kMinIncrements);
+  if (space.c.certify.friction > 0) {
+    indentation.friction = fem::ToolFriction::NoSlip;
+    const int parts = (kStickingIncrements - 1) / indentation.increments + 1;
+    indentation.increments *= parts;
+  }
   return settings;
 }
 
@@ -64,6 +73,39 @@ void require_same_body(const Curves& curves, const fs::path& body_file) {
               "the curves were computed on another body (its digest differs)",
               "run 'palpate build' again");
 }
+
+/// The depths of presses that are compared: those of the case and of the lateral paths. A press
+/// that sticks passes more.
+class ComparedDepths {
+ public:
+  ComparedDepths(const fem::IndentationSettings& own, const fem::IndentationSettings& direct)
+      : depths_(direct.lateral_depths), tolerance_(kSameDepth * own.depth) {
+    for (int i = 0; i <= own.increments; ++i) depths_.push_back(own.depth * i / own.increments);
+  }
+  bool contain(double depth) const {
+    return std::any_of(depths_.begin(), depths_.end(),
+                       [&](double compared) { return std::abs(depth - compared) < tolerance_; });
+  }
+  Curves of(Curves curves) const {
+    const auto is_passed = [&](const CurveSample& sample) { return !contain(sample.displacement); };
+    for (SiteCurves& site : curves.sites)
+      for (CurvePath& path : site.paths)
+        if (path.kind == PathKind::Normal)
+          path.samples.erase(std::remove_if(path.samples.begin(), path.samples.end(), is_passed),
+                             path.samples.end());
+    return curves;
+  }
+  SiteFields of(SiteFields fields) const {
+    const auto is_passed = [&](const NormalField& field) { return !contain(field.depth); };
+    fields.normal.erase(std::remove_if(fields.normal.begin(), fields.normal.end(), is_passed),
+                        fields.normal.end());
+    return fields;
+  }
+
+ private:
+  std::vector<double> depths_;
+  double tolerance_;
+};
 
 /// The points must lie on the surface of every library.
 void require_same_surface(const Library& library, const Body& body, const fs::path& file) {
@@ -82,6 +124,8 @@ std::string direct_key(const Workspace& space, const fem::CampaignSettings& sett
                                  sha256_of_file(space.body()), stage_case(space, Stage::Precompute),
                                  PALPATE_VERSION, settings.indentation.lateral_increments);
   if (settings.indentation.divide_once_more) text += "on a finer mesh\n";
+  if (settings.indentation.friction == fem::ToolFriction::NoSlip)
+    text += fmt::format("sticking, {}\n", settings.indentation.increments);
   for (const fem::PressPoint& p : settings.points)
     text += fmt::format("{} {} {} {} {} {}\n", p.position[0], p.position[1], p.position[2],
                         p.inward[0], p.inward[1], p.inward[2]);
@@ -98,7 +142,8 @@ Curves solve_direct(const Workspace& space, const Body& body, fem::CampaignSetti
       {direct_key(space, settings), static_cast<std::int64_t>(settings.points.size())});
   settings.known = journal.found();
   settings.finished = [&](const SiteCurves& site) { journal.append(site); };
-  if (space.c.deformation.depths > 0) keep_fields_in(direct_fields(space), kDirectFields, settings);
+  if (space.c.deformation.depths > 0)
+    keep_fields_in(direct_fields(space), settings.indentation.increments, settings);
   settings.field_friction = space.c.certify.friction;
   ProgressDisplay display("direct", console().out);
   settings.progress = [&](const fem::CampaignProgress& p) {
@@ -119,10 +164,12 @@ Curves solve_direct(const Workspace& space, const Body& body, fem::CampaignSetti
 std::vector<fidelity::SkinErrorRow> skin_rows(const Workspace& space, const fs::path& library,
                                               const fidelity::RenderedBody& rendered,
                                               const std::vector<fidelity::HoldOutPoint>& points,
-                                              const Curves& direct) {
+                                              const Curves& direct, const ComparedDepths& depths) {
   const fs::path file = library.parent_path() / space.deformation().filename();
   if (space.c.deformation.depths == 0 || !fs::exists(file)) return {};
-  const auto fields = [&](const SiteCurves& site) { return fields_of(direct_fields(space), site); };
+  const auto fields = [&](const SiteCurves& site) {
+    return depths.of(fields_of(direct_fields(space), site));
+  };
   return fidelity::measure_skin(rendered, {rendered, file}, points, direct, fields,
                                 space.c.certify.friction);
 }
@@ -166,8 +213,10 @@ bool run_fidelity(const Workspace& space, const FidelityOptions& options) {
   auto points =
       fidelity::draw_points(libraries.front(), options.off_node, options.at_node, options.seed);
   std::string text = skin_text(fidelity::find_skin(body, points)), states;
-  const Curves direct =
-      solve_direct(space, body, direct_settings(space, options.finer_mesh, points));
+  const fem::CampaignSettings pressed = direct_settings(space, options.finer_mesh, points);
+  const Curves solved = solve_direct(space, body, pressed);
+  const ComparedDepths depths(space.c.campaign.indentation, pressed.indentation);
+  const Curves direct = depths.of(solved);
 
   const fidelity::FidelitySettings settings{
       options.floor > 0 ? options.floor : fidelity::relative_floor(direct, options.floor_fraction),
@@ -181,7 +230,7 @@ bool run_fidelity(const Workspace& space, const FidelityOptions& options) {
     const fidelity::RenderedBody rendered(file);
     const fidelity::Fidelity result =
         fidelity::measure({library, rendered, points, direct, sampled}, settings);
-    const auto skin = skin_rows(space, file, rendered, points, direct);
+    const auto skin = skin_rows(space, file, rendered, points, solved, depths);
     complete = complete && result.left_out.empty();
     std::error_code none;
     const LibrarySize size{bytes_per_node(library), fs::file_size(file, none)};

@@ -256,14 +256,17 @@ Json relaxation_of(const Library& library) {
   return times;
 }
 
-/// How far presses lean: median and largest length of the lean of a vertex with a response.
+/// How far presses lean: median and largest length of the lean of a vertex with a response, at the
+/// depth where it is longest.
 Json lean_of(const Library& library) {
   std::vector<double> lengths;
   for (const NodeResponse& node : library.responses) {
     if (node.status == ResponseStatus::Hole) continue;
     const auto& [x, y, z] = node.lean;
-    lengths.push_back(
-        std::hypot(static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)));
+    const double length =
+        std::hypot(static_cast<double>(x), static_cast<double>(y), static_cast<double>(z));
+    const bool grows = library.kind == ResponseKind::Coupled && length > 0;
+    lengths.push_back(grows ? node.coupling.largest() * length : length);
   }
   std::sort(lengths.begin(), lengths.end());
   return {{"median", lengths[lengths.size() / 2]}, {"max", lengths.back()}};

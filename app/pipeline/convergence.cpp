@@ -117,6 +117,7 @@ ConvergenceTable run_convergence(const Workspace& space, int levels,
     paths.lateral_depths = {
         *std::max_element(paths.lateral_depths.begin(), paths.lateral_depths.end())};
   if (paths.azimuths.size() > 1) paths.azimuths = {paths.azimuths.front()};
+  paths.drag_across = false;
 
   ConvergenceTable table;
   table.element_sizes = finer_element_sizes(meshing.patch_spacing, meshing.element_size, levels);

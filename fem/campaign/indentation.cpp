@@ -23,8 +23,11 @@ namespace {
 constexpr double kTouching = 1e-6;
 /// Radius around the site within which self-contact is detected, over the extent of the tool.
 constexpr double kWatched = 4;
-/// A path across a lateral one: its travel over that of the lateral path, and the error of its tool
-/// force. Only the picture of the skin comes from it, linear in the travel.
+/// Increments of the path across the azimuth: with two, what is proportional to the force of a drag
+/// is told from what is proportional to its square.
+constexpr std::size_t kAcrossIncrements = 2;
+/// A path across a lateral one for its observer: its travel over that of the lateral path, and the
+/// error of its tool force. Only the picture of the skin comes from it, linear in the travel.
 constexpr double kAcrossTravel = 0.5;
 constexpr double kAcrossTolerance = 5e-3;
 
@@ -210,7 +213,7 @@ void SiteSolver::run_lateral_path(Site& site, const LateralPlan& plan, SiteCurve
 std::size_t SiteSolver::count_increments(const SitePlan& plan) const {
   std::size_t count = normal_increments(context_.indentation, plan.stops).size();
   for (const LateralPlan& lateral : plan.lateral)
-    count += lateral.travels.size() + (also_across_ ? 1 : 0);
+    count += lateral.travels.size() + (needs_across(lateral, plan.lateral) ? 1 : 0);
   return count;
 }
 
@@ -219,6 +222,14 @@ void SiteSolver::increment_done() {
   if (on_increment_)
     on_increment_(static_cast<double>(increments_done_) / static_cast<double>(increments_),
                   thread_cpu_seconds() - start_);
+}
+
+/// Does the skin need a path across this one? No other direction is dragged at its depth.
+bool SiteSolver::needs_across(const LateralPlan& path, const std::vector<LateralPlan>& all) const {
+  const auto there = std::count_if(all.begin(), all.end(), [&](const LateralPlan& other) {
+    return other.lateral_depth == path.lateral_depth;
+  });
+  return also_across_ && there == 1;
 }
 
 /// No force is read from this path.
@@ -243,6 +254,12 @@ SitePlan SiteSolver::plan_of_settings(const Vec3& inward) const {
       plan.lateral.push_back({lateral_depth,
                               to_vec3(std::cos(azimuth) * first + std::sin(azimuth) * second),
                               travels});
+  if (settings.drag_across && settings.azimuths.size() == 1 && !plan.lateral.empty()) {
+    LateralPlan across = plan.lateral[plan.lateral.size() / 2];
+    across.direction = to_vec3(to_eigen(inward).cross(to_eigen(across.direction)));
+    across.travels.resize(std::min(across.travels.size(), kAcrossIncrements));
+    plan.lateral.push_back(std::move(across));
+  }
   return plan;
 }
 
@@ -277,10 +294,10 @@ SiteCurves SiteSolver::solve(std::int32_t vertex, const SitePlan& plan) {
   increments_done_ = 0;
   Site site(context_, context_.press_point(vertex), member_);
   run_normal_path(site, plan.stops, curves);
-  for (const LateralPlan& lateral : within_reach(plan, site))
-    run_lateral_path(site, lateral, curves);
-  if (also_across_)
-    for (const LateralPlan& lateral : within_reach(plan, site)) run_across(site, lateral, curves);
+  const std::vector<LateralPlan> paths = within_reach(plan, site);
+  for (const LateralPlan& lateral : paths) run_lateral_path(site, lateral, curves);
+  for (const LateralPlan& lateral : paths)
+    if (needs_across(lateral, paths)) run_across(site, lateral, curves);
   if (curves.paths.front().samples.size() < 2) curves.status = SiteStatus::Failed;
   curves.cpu_seconds = thread_cpu_seconds() - start_;
   return curves;

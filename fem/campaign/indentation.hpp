@@ -47,8 +47,8 @@ class SiteSolver {
                                              const Displacement&, const CurveSample&)>;
   void observe_lateral(LateralObserver observer) { lateral_observer_ = std::move(observer); }
 
-  /// Every lateral path is then followed by one across it, for its observer alone: the curves do
-  /// not have it. Where a site has a single azimuth, the skin would be known in one direction.
+  /// Every lateral path that is the only one at its depth is then followed by one across it, for
+  /// its observer alone: the curves do not have it. The skin would be known in one direction.
   void also_across(bool wanted) { also_across_ = wanted; }
 
   /// Called after every increment with the fraction of the site's increments that are done, and the
@@ -67,6 +67,7 @@ class SiteSolver {
   void run_normal_path(Site& site, const std::vector<double>& stops, SiteCurves& curves);
   void run_lateral_path(Site& site, const LateralPlan& plan, SiteCurves& curves);
   void run_across(Site& site, const LateralPlan& plan, const SiteCurves& curves);
+  bool needs_across(const LateralPlan& path, const std::vector<LateralPlan>& all) const;
   std::size_t count_increments(const SitePlan& plan) const;
   void increment_done();
 

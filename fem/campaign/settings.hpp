@@ -39,7 +39,10 @@ struct IndentationSettings {
   std::vector<double> lateral_depths{
       0.002, 0.004, 0.006};           ///< m, where lateral paths start; each at most `depth`
   std::vector<double> azimuths{0.0};  ///< rad, from the first tangent direction of the site
-  double force_tolerance = 1e-4;      ///< relative error of the tool force allowed to the solver
+  /// With a single azimuth a shorter path across it as well, at the middle lateral depth: the force
+  /// along the press direction is then known for drags in any direction.
+  bool drag_across = false;
+  double force_tolerance = 1e-4;  ///< relative error of the tool force allowed to the solver
   /// How often the elements around the tool are divided into eight, for each site anew: for
   /// contacts smaller than a facet. Each further time within half the distance from the site.
   int refine_under_tool = 0;

@@ -78,7 +78,7 @@ class Challenger {
     const double limit = model.slip_limit(pressed, library_.certificate.friction);
     if (!std::isfinite(limit)) return std::nullopt;
     const double rho = mode == Mode::Sticking ? attempt.lateral * limit : limit;
-    const Vec3 x = model.contact_point() + (z + d0) * n + z * model.lean() +
+    const Vec3 x = model.contact_point() + (z + d0) * n + model.shear(pressed) +
                    rho * sideways(n, attempt.azimuth);
     const double step = step_length();
     const Vec3 dx = (step / norm(attempt.move)) * attempt.move;
@@ -121,9 +121,13 @@ class Challenger {
     const std::int32_t triangle = point.element;
     for (int i = 0; i < kSlideSteps; ++i) {
       LocalModel model(surface_, point, d0);
-      model.set_grip(
-          {std::min(grip.depth, std::max(model.deflection(x).depth, 0.0)), grip.micro_slip});
-      const runtime::Deflection d = model.deflection(x);
+      model.set_grip(grip);
+      runtime::Deflection d = model.deflection(x);
+      if (d.depth < grip.depth) {
+        runtime::ToolPieces pieces;
+        runtime::LocalResponse response = model.respond(d, pieces);
+        model.renew_grip(d, response, pieces);
+      }
       const double excess = d.lateral - model.slip_limit(d, library_.certificate.friction);
       if (!(excess > kRestOverStep * step_length())) {
         if (norm(model.contact_point() - start) < 1e-3 * step_length()) return std::nullopt;

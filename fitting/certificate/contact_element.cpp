@@ -54,27 +54,51 @@ ContactElement contact_element(const Library& library, std::size_t index, double
   return element;
 }
 
-/// sigma is the mean of those of the vertices, weighted, less its part along n.
-double ContactElement::most_lean() const {
-  const double largest = std::max({norm(lean[0]), norm(lean[1]), norm(lean[2])});
+/// sigma is the mean of those of the vertices, weighted, less its part along n. w does not fall.
+double ContactElement::most_lean(const Range& z) const {
+  if (!leans()) return 0;
+  double largest = 0;
+  for (std::size_t l = 0; l < 3; ++l) {
+    const double length = norm(lean[l]);
+    largest =
+        std::max(largest, coupling ? coupling_at(coupling->curves()[l], z.high) * length : length);
+  }
   return largest > 0 ? kRoundingFactor * largest : 0;
 }
 
-/// With the sum S = sum n_l sigma_l: d sigma/ds = dS/ds across n - (n . S) dn/ds, and |dS/ds| is at
-/// most the Frobenius norm of its gradient.
-double ContactElement::most_lean_change() const {
-  if (!(most_lean() > 0)) return 0;
-  const Vec3 first = lean[1] - lean[0], second = lean[2] - lean[0];
-  double squares = 0;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const Vec3 gradient = first[i] * frame.gradient[1] + second[i] * frame.gradient[2];
-    squares += dot(gradient, gradient);
+/// With the sum S = sum n_l w_l sigma_l: d sigma/ds = dS/ds across n - (n . S) dn/ds, and |dS/ds|
+/// is at most the Frobenius norm of its gradient, which is convex in the w_l: largest at a corner
+/// of their ranges.
+double ContactElement::most_lean_change(const Range& z) const {
+  if (!leans()) return 0;
+  double largest = 0;
+  for (unsigned corner = 0; corner < 8; ++corner) {
+    std::array<Vec3, 3> at = lean;
+    for (std::size_t l = 0; coupling && l < 3; ++l) {
+      const Range w = coupling_at(coupling->curves()[l], z);
+      at[l] = (((corner >> l) & 1u) != 0 ? w.high : w.low) * at[l];
+    }
+    const Vec3 first = at[1] - at[0], second = at[2] - at[0];
+    double squares = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vec3 gradient = first[i] * frame.gradient[1] + second[i] * frame.gradient[2];
+      squares += dot(gradient, gradient);
+    }
+    largest = std::max(largest, squares);
   }
-  return kRoundingFactor * (std::sqrt(squares) + most_lean() * frame.kappa);
+  return kRoundingFactor * (std::sqrt(largest) + most_lean(z) * frame.kappa);
 }
 
-double ContactElement::stretch() const {
-  const double s = most_lean();
+double ContactElement::most_lean_growth(const Range& z) const {
+  if (!coupling || !leans()) return 0;
+  double largest = 0;
+  for (std::size_t l = 0; l < 3; ++l)
+    largest = std::max(largest, slope_range(coupling->curves()[l], z).high * norm(lean[l]));
+  return kRoundingFactor * largest;
+}
+
+double ContactElement::stretch(const Range& z) const {
+  const double s = most_lean(z);
   return s > 0 ? kRoundingFactor * (1 + s * (s / 2 + std::sqrt(1 + s * s / 4))) : 1;
 }
 

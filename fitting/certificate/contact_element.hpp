@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "fitting/certificate/curve_bounds.hpp"
+#include "fitting/certificate/range.hpp"
 #include "fitting/certificate/triangle_frame.hpp"
 #include "format/library.hpp"
 
@@ -22,14 +23,17 @@ struct ContactElement {
   double depth = 0;                                    ///< m, D: the bounds hold while z + d0 <= D
   std::optional<CurveTriple> coupling = std::nullopt;  ///< w, of coupled responses
   bool relaxes = false;  ///< slip may begin below mu g: bounds hold whatever the tissue remembers
-  std::array<Vec3, 3> lean{};  ///< sigma_l, 1
+  std::array<Vec3, 3> lean{};  ///< sigma_l, 1; of coupled responses at w = 1
 
-  double most_lean() const;  ///< sup |sigma| over the triangle
-  /// sup |d sigma/ds| over the triangle, along any direction in its plane, 1/m
-  double most_lean_change() const;
-  /// |A|^2 for A = I - sigma n^T at the largest |sigma|: what a bound of the forces in the response
-  /// coordinates has to be multiplied by. 1 without lean.
-  double stretch() const;
+  bool leans() const { return lean != std::array<Vec3, 3>{}; }
+  double most_lean(const Range& z) const;  ///< sup |sigma| over the triangle and a cell of depths
+  /// sup |d sigma/ds| over the triangle and a cell of depths, along any direction in its plane, 1/m
+  double most_lean_change(const Range& z) const;
+  /// sup |d sigma/dz| over the triangle and a cell of depths, 1/m: it grows with the contact
+  double most_lean_growth(const Range& z) const;
+  /// |A|^2 for A = I - sigma n^T at the largest |sigma| over a cell of depths: what a bound of the
+  /// forces in the response coordinates has to be multiplied by. 1 without lean.
+  double stretch(const Range& z) const;
 
   /// Ends of intervals of depth from 0 to D, or to `deepest`, that have no knot of a normal
   /// response or of w inside.
@@ -48,6 +52,9 @@ ContactElement contact_element(const Library& library, std::size_t triangle, dou
 /// w(z) of a vertex, from w(0) on.
 inline double coupling_at(const runtime::CompiledCurve& w, double z) {
   return z > 0 ? w.force(z) : w.pieces().front().force;
+}
+inline Range coupling_at(const runtime::CompiledCurve& w, const Range& z) {
+  return {coupling_at(w, z.low), coupling_at(w, z.high)};
 }
 
 }  // namespace palpate::fitting

@@ -129,6 +129,12 @@ Range coupled_limit(const ContactElement& element, const Range& z) {
   return element.lateral.inverse(low, high);
 }
 
+/// mu g |d sigma/dz|: what a lean that grows with the contact adds to the slope of the force by the
+/// depth, where the lateral force is within friction.
+double lean_growth(const ContactElement& element, const Range& z) {
+  return element.friction * element.normal.greatest_force(z.high) * element.most_lean_growth(z);
+}
+
 std::optional<SlideState> coupled_state(const ContactElement& element, const Range& z) {
   const double mu = element.friction;
   SlideState state;
@@ -154,7 +160,7 @@ std::optional<SlideState> coupled_state(const ContactElement& element, const Ran
                 w_l.high * h.force(state.rho.high) - mu * g[l].low};
     state.max_g = std::max(state.max_g, g[l].high);
   }
-  state.depth_slope = std::hypot(1.0, mu) * g_z.high;
+  state.depth_slope = std::hypot(g_z.high + lean_growth(element, z), mu * g_z.high);
   state.variation = std::hypot(1.0, mu) * box_gradient(element, g);
   if (!(mu > 0)) return state;
   state.h_over_rho = w_high * element.lateral.slope({0, state.rho.high}).high;
@@ -178,24 +184,25 @@ std::optional<SlideState> slide_state(const ContactElement& element, const Range
 /// sup |q| of (6).
 double rate_of_depth(const ContactElement& element, const SlideState& state) {
   const TriangleFrame& frame = element.frame;
-  return frame.sin_theta + (state.rho.high + element.depth * element.most_lean()) * frame.kappa;
+  return frame.sin_theta +
+         (state.rho.high + element.depth * element.most_lean(state.z)) * frame.kappa;
 }
 
 /// What the lean adds to p of (6) and to the part across it: (6a).
 double lean_rate(const ContactElement& element, const SlideState& state) {
-  const double lean = element.most_lean();
+  const double lean = element.most_lean(state.z);
   if (!(lean > 0)) return 0;
-  return element.depth * element.most_lean_change() + lean * rate_of_depth(element, state);
+  return element.depth * element.most_lean_change(state.z) + lean * rate_of_depth(element, state);
 }
 
 /// |v| of the lean, (9b), with all terms of q and s that contain it.
 double lean_part(const ContactElement& element, const SlideState& state) {
-  const double lean = element.most_lean(), kappa = element.frame.kappa;
+  const double lean = element.most_lean(state.z), kappa = element.frame.kappa;
   if (!(lean > 0)) return 0;
   const double felt = element.friction * state.max_g;
   return state.depth_slope * element.depth * lean * kappa +
          state.h_over_rho * lean_rate(element, state) +
-         felt * (lean * (1 + lean) * kappa + element.most_lean_change()) +
+         felt * (lean * (1 + lean) * kappa + element.most_lean_change(state.z)) +
          lean * kappa * state.max_g;
 }
 
@@ -218,7 +225,7 @@ SlideBound cell_bound(const ContactElement& element, const SlideState& state) {
   const double mu = element.friction;
   if (state.rho.high == kInfinity) return {kInfinity, {0, kInfinity, 0, 0}};
 
-  const double stretch = element.stretch();
+  const double stretch = element.stretch(state.z);
   SlideCauses causes;
   causes.stiffness = stretch * std::max(state.depth_slope, state.h_over_rho);
   const double rate = stretch * slide_rate(element, state);
@@ -266,15 +273,17 @@ double cell_stick(const ContactElement& element, const Range& z) {
   const double any = w * element.lateral.max_slope();
   const double within =
       rho < kInfinity && !element.relaxes ? w * element.lateral.slope({0, rho}).high : any;
-  return std::max(
-      any, triangular_norm(element.normal.slope(z).high, largest_shrinking(element, z), within));
+  const double by_depth = element.normal.slope(z).high + lean_growth(element, z);
+  return element.stretch(z) *
+         std::max(any, triangular_norm(by_depth, largest_shrinking(element, z), within));
 }
 
 /// Bound of a cell of depths of coupled responses at a fixed contact point, with slip over that
 /// point included.
 double cell_min_bound(const ContactElement& element, const Range& z) {
-  return std::max(cell_stick(element, z),
-                  std::hypot(1.0, element.friction) * element.normal.slope(z).high);
+  const double g_z = element.normal.slope(z).high;
+  const double slipping = std::hypot(g_z + lean_growth(element, z), element.friction * g_z);
+  return std::max(cell_stick(element, z), element.stretch(z) * slipping);
 }
 
 /// Below every knot the normal responses are linear. If w is constant there, nothing else depends
@@ -283,7 +292,7 @@ double min_bound_beyond(const ContactElement& element, double depth) {
   const Range beyond{depth, 2 * depth};
   if (element.coupling->slope(beyond).high > 0) return kInfinity;
   const double lateral = element.coupling->greatest_force(depth) * element.lateral.max_slope();
-  return kRoundingFactor *
+  return kRoundingFactor * element.stretch(beyond) *
          std::max(std::hypot(1.0, element.friction) * element.normal.slope(beyond).high, lateral);
 }
 
@@ -331,7 +340,7 @@ bool energy_falls(const ContactElement& element, const SlideState& state) {
   const double arm = std::max(std::abs(state.rho.high - mu * state.z.low),
                               std::abs(state.rho.low - mu * element.depth));
   const double lean =
-      element.depth * element.most_lean() * frame.kappa + mu * lean_rate(element, state);
+      element.depth * element.most_lean(state.z) * frame.kappa + mu * lean_rate(element, state);
   return mu * frame.cos_theta >=
          kRoundingFactor * (frame.sin_theta + ratio + frame.kappa * arm + lean);
 }
@@ -354,10 +363,8 @@ double stick_bound(const ContactElement& element) {
   // The Jacobian at a fixed contact point is g' n n^T + h' t t^T + (h/rho) s s^T, its norm is
   // the largest of the three; h/rho <= max h', and interpolated slopes do not exceed those at the
   // vertices.
-  const double response = element.coupling
-                              ? over_depths(element, element.depth, cell_stick)
-                              : std::max(element.normal.max_slope(), element.lateral.max_slope());
-  return element.stretch() * response;
+  if (element.coupling) return over_depths(element, element.depth, cell_stick);
+  return element.stretch({}) * std::max(element.normal.max_slope(), element.lateral.max_slope());
 }
 
 double min_lipschitz_bound(const ContactElement& element) {
@@ -365,11 +372,12 @@ double min_lipschitz_bound(const ContactElement& element) {
   if (!element.coupling) {
     const double oblique =
         element.friction > 0 ? kRoundingFactor * std::hypot(1.0, element.friction) : 1.0;
-    return std::max(stick_bound(element), element.stretch() * oblique * element.normal.max_slope());
+    return std::max(stick_bound(element),
+                    element.stretch({}) * oblique * element.normal.max_slope());
   }
   const double deepest = std::max(element.normal.last_knot(), element.coupling->last_knot());
-  return element.stretch() * std::max(over_depths(element, deepest, cell_min_bound),
-                                      min_bound_beyond(element, deepest));
+  return std::max(over_depths(element, deepest, cell_min_bound),
+                  min_bound_beyond(element, deepest));
 }
 
 SlideBound slide_bound(const ContactElement& with_memory) {

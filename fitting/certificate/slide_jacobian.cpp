@@ -73,6 +73,7 @@ struct SlideJacobian::Facet {
   Range lean_t, lean_s;            ///< t . sigma and s . sigma
   Range lean_turn;                 ///< sigma . dn/ds, 1/m
   Range lean_t_rate, lean_s_rate;  ///< t . d sigma/ds and s . d sigma/ds, 1/m
+  Range lean_growth;               ///< t . d sigma/dz, 1/m
 };
 
 struct SlideJacobian::AtVertex {
@@ -94,6 +95,7 @@ struct SlideJacobian::Terms {
   Range g_tau;         ///< derivative of g along tau
   Range mu_g;          ///< mu g
   Range mu_g_z;        ///< derivative of mu g by z
+  Range n_z;           ///< that of the force along n: g', less what a growing lean takes
   Range mu_g_tau;      ///< derivative of mu g along tau
   Range limit_rate;    ///< decrease of rho_s along tau
   Range q, p, s;       ///< those of (6), less what a slide to the limit needs of p
@@ -112,8 +114,7 @@ SlideJacobian::SlideJacobian(const ContactElement& element) : element_(&element)
     lean_[l] = {dot(element.lean[l], frame.normal), dot(element.lean[l], x),
                 dot(element.lean[l], y)};
   }
-  leans_ = element.most_lean() > 0;
-  stretch_ = element.stretch();
+  leans_ = element.leans();
   for (const double start : element.lateral.cells({0, element.lateral.last_knot()}, 1)) {
     LateralPiece piece{start};
     for (std::size_t l = 0; l < 3; ++l) {
@@ -158,6 +159,14 @@ SlideJacobian::Axes SlideJacobian::interpolated(const SlideCell& cell, const Tur
   return {component(vectors[0]), component(vectors[1]), component(vectors[2])};
 }
 
+SlideJacobian::Axes SlideJacobian::interpolated(const SlideCell& cell, const Turned& vectors,
+                                                const Weights& weights) {
+  const auto component = [&](const std::array<double, 3>& v) {
+    return over(cell.part, {v[0] * weights[0], v[1] * weights[1], v[2] * weights[2]});
+  };
+  return {component(vectors[0]), component(vectors[1]), component(vectors[2])};
+}
+
 SlideJacobian::Axes SlideJacobian::rate(const Facet& f, const Turned& vectors) const {
   const double c0 = std::cos(f.turn), s0 = std::sin(f.turn);
   const auto component = [&](const std::array<double, 3>& u) {
@@ -167,6 +176,14 @@ SlideJacobian::Axes SlideJacobian::rate(const Facet& f, const Turned& vectors) c
       by_y += (u[l] - u[0]) * (-s0 * gradient_[l][0] + c0 * gradient_[l][1]);
     }
     return by_x * f.cosine + by_y * f.sine;
+  };
+  return {component(vectors[0]), component(vectors[1]), component(vectors[2])};
+}
+
+SlideJacobian::Axes SlideJacobian::rate(const Facet& f, const Turned& vectors,
+                                        const Weights& weights) const {
+  const auto component = [&](const std::array<double, 3>& v) {
+    return along(f, {v[0] * weights[0], v[1] * weights[1], v[2] * weights[2]});
   };
   return {component(vectors[0]), component(vectors[1]), component(vectors[2])};
 }
@@ -209,11 +226,25 @@ Range SlideJacobian::along_s(const Facet& f, const Axes& a) {
   return f.r * a.b(f) - f.n_b * (f.n_N * a.N + f.n_tau * a.tau(f)) / f.r;
 }
 
-/// sigma is the part of the sum S = sum n_l sigma_l across n; its derivative across n is that of S
-/// less (n . S) dn/ds.
+/// sigma is the part of the sum S = sum n_l w_l sigma_l across n; its derivative across n is that
+/// of S less (n . S) dn/ds.
 void SlideJacobian::add_lean(const SlideCell& cell, Facet& f) const {
   const Turned leans = turned(lean_, f.turn);
-  const Axes S = interpolated(cell, leans), change = rate(f, leans);
+  Axes S, change;
+  if (element_->coupling) {
+    Weights w, growth;
+    for (std::size_t l = 0; l < 3; ++l) {
+      const runtime::CompiledCurve& coupling = element_->coupling->curves()[l];
+      w[l] = coupling_at(coupling, cell.z);
+      growth[l] = slope_range(coupling, cell.z);
+    }
+    S = interpolated(cell, leans, w);
+    change = rate(f, leans, w);
+    f.lean_growth = along_t(f, interpolated(cell, leans, growth));
+  } else {
+    S = interpolated(cell, leans);
+    change = rate(f, leans);
+  }
   const Range along_n = f.n_N * S.N + f.n_tau * S.tau(f) + f.n_b * S.b(f);
   f.lean_t = along_t(f, S);
   f.lean_s = along_s(f, S);
@@ -329,24 +360,34 @@ SlideJacobian::Terms SlideJacobian::terms(const SlideCell& cell, const Range& rh
   x.m = (mu * x.r.g_z - shrinking) / x.r.w_h_r;
   x.mu_g = mu * x.r.g_here;
   x.mu_g_z = mu * x.r.g_z;
+  x.n_z = x.r.g_z;
   x.limit_rate = along(x.f, x.r.excess) / x.r.w_h_r;
   x.g_tau = along(x.f, x.r.g);
   x.mu_g_tau = mu * x.g_tau;
   x.q = x.f.n_tau - rho * x.f.kappa_t;
   x.p = x.f.t_tau + cell.reach * x.f.kappa_t;
   x.s = x.f.s_tau + cell.reach * x.f.kappa_s;
-  if (leans_) add_lean(cell, x);
+  if (leans_) add_lean(cell, grip, x);
   x.rate = x.p - x.m * x.q - x.limit_rate;
   x.norm_M0 =
-      std::max(std::hypot(x.r.g_z.magnitude(), x.mu_g_z.magnitude()), x.r.h_over_rho.magnitude());
+      std::max(std::hypot(x.n_z.magnitude(), x.mu_g_z.magnitude()), x.r.h_over_rho.magnitude());
   return x;
 }
 
-/// (6a): the rates of the coordinates in the frame of A x'.
-void SlideJacobian::add_lean(const SlideCell& cell, Terms& x) {
-  x.q = x.q - cell.z * x.f.lean_turn;
-  x.p = x.p + cell.z * x.f.lean_t_rate - x.f.lean_t * x.q;
-  x.s = x.s + cell.z * x.f.lean_s_rate - x.f.lean_s * x.q;
+/// The z of (6a): what a lean shears is sigma (z - z_w/2), and z_w = z where responses are coupled.
+Range SlideJacobian::sheared_depth(const SlideCell& cell) const {
+  return element_->coupling ? 0.5 * cell.z : cell.z;
+}
+
+/// (6a): the rates of the coordinates in the frame of A x'; (6b): A changes with the depth.
+void SlideJacobian::add_lean(const SlideCell& cell, Grip grip, Terms& x) const {
+  const Range z = sheared_depth(cell);
+  x.q = x.q - z * x.f.lean_turn;
+  x.p = x.p + z * x.f.lean_t_rate - x.f.lean_t * x.q;
+  x.s = x.s + z * x.f.lean_s_rate - x.f.lean_s * x.q;
+  if (!element_->coupling) return;
+  const Range grown = x.n_z - x.mu_g * x.f.lean_growth;
+  x.n_z = grip == Grip::Renewed ? grown : hull(grown, x.n_z);
 }
 
 /// (9b): what the turning of A adds to v.
@@ -363,14 +404,14 @@ double SlideJacobian::bound(const SlideCell& cell) const {
   if (rho.high == kInfinity) return kInfinity;
   double bound = bound_of_response(cell, rho, Grip::Renewed);
   if (element_->coupling) bound = std::max(bound, bound_of_response(cell, rho, Grip::Kept));
-  return stretch_ * bound;
+  return element_->stretch(cell.z) * bound;
 }
 
 /// The bound of A^-T df/dx' A^-1.
 double SlideJacobian::bound_of_response(const SlideCell& cell, const Range& rho, Grip grip) const {
   const Terms x = terms(cell, rho, grip);
   if (!(x.r.w_h_r.low > 0)) return kInfinity;
-  Range v_n = x.g_tau - x.r.g_z * x.q - x.mu_g * x.f.kappa_t;
+  Range v_n = x.g_tau - x.n_z * x.q - x.mu_g * x.f.kappa_t;
   Range v_t = x.mu_g_tau - x.mu_g_z * x.q + x.r.g_here * x.f.kappa_t;
   Range v_s = x.r.g_here * x.f.kappa_s - x.r.h_over_rho * x.s;
   if (leans_) add_lean(x, v_n, v_t, v_s);
@@ -379,14 +420,14 @@ double SlideJacobian::bound_of_response(const SlideCell& cell, const Range& rho,
   if (!(x.rate.low > 0)) return kInfinity;
   const Range w_t = Range{1, 1} / x.rate, w_n = (-1) * x.m / x.rate;
   const Range zero{};
-  double norm = std::max(x.norm_M0, norm_bound({{{x.r.g_z + v_n * w_n, v_n * w_t, zero},
+  double norm = std::max(x.norm_M0, norm_bound({{{x.n_z + v_n * w_n, v_n * w_t, zero},
                                                  {x.mu_g_z + v_t * w_n, v_t * w_t, zero},
                                                  {v_s * w_n, v_s * w_t, x.r.h_over_rho}}}));
   if (x.rate.high <= 1) return kRoundingFactor * norm;
   // The runtime moves c by rho - rho_s, which is more than needed: (9a).
   const Range over{std::max(0.0, x.rate.low - 1), x.rate.high - 1};
   const Range u_t = v_t - over * x.r.w_h_r;
-  return kRoundingFactor * std::max(norm, norm_bound({{{x.r.g_z - v_n * x.m, v_n, zero},
+  return kRoundingFactor * std::max(norm, norm_bound({{{x.n_z - v_n * x.m, v_n, zero},
                                                        {x.mu_g_z - u_t * x.m, u_t, zero},
                                                        {(-1) * v_s * x.m, v_s, x.r.h_over_rho}}}));
 }
@@ -396,21 +437,22 @@ SlideCauses SlideJacobian::causes(const SlideCell& state) const {
   if (!(rho.high < kInfinity)) return {0, kInfinity, kInfinity, kInfinity};
   const Terms x = terms(state, rho, Grip::Renewed);
   if (!(x.r.w_h_r.low > 0 && x.rate.low > 0)) return {x.norm_M0, kInfinity, kInfinity, kInfinity};
+  const double stretch = element_->stretch(state.z);
   const double motion =
-      stretch_ * std::hypot(1.0, x.m.magnitude()) / x.rate.low;  // |w|, times |A|^2
+      stretch * std::hypot(1.0, x.m.magnitude()) / x.rate.low;  // |w|, times |A|^2
   const auto length = [&](const Range& n, const Range& t, const Range& s) {
     return motion * std::hypot(n.magnitude(), t.magnitude(), s.magnitude());
   };
   const Range turned = rho * x.f.kappa_t;
   SlideCauses causes{
-      stretch_ * x.norm_M0, length(x.g_tau, x.mu_g_tau, {}),
+      stretch * x.norm_M0, length(x.g_tau, x.mu_g_tau, {}),
       length(x.r.g_z * x.f.n_tau, x.mu_g_z * x.f.n_tau, x.r.h_over_rho * x.f.s_tau),
       length(x.r.g_z * turned - x.mu_g * x.f.kappa_t, x.mu_g_z * turned + x.r.g_here * x.f.kappa_t,
              (x.r.g_here - x.r.h_over_rho * state.reach) * x.f.kappa_s)};
   if (!leans_) return causes;
-  const Range shift = state.z * x.f.lean_turn;
-  Range n = x.r.g_z * shift, t = x.mu_g_z * shift;
-  Range s = x.r.h_over_rho * (x.f.lean_s * x.q - state.z * x.f.lean_s_rate);
+  const Range shift = sheared_depth(state) * x.f.lean_turn;
+  Range n = x.n_z * shift, t = x.mu_g_z * shift;
+  Range s = x.r.h_over_rho * (x.f.lean_s * x.q - sheared_depth(state) * x.f.lean_s_rate);
   add_lean(x, n, t, s);
   causes.lean = length(n, t, s);
   return causes;

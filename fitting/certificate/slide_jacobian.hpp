@@ -52,24 +52,29 @@ class SlideJacobian {
   struct Terms;  // of (8) and (9)
   struct Axes;
   using Turned = std::array<std::array<double, 3>, 3>;  ///< components of the vectors of vertices
+  using Weights = std::array<Range, 3>;                 ///< of the vertices
+
+  /// What w does while c slides and z changes: the slip limit follows it, or, as the contact grows
+  /// and the lateral offset of the grip takes the rest, does not.
+  enum class Grip { Renewed, Kept };
 
   static Turned turned(const std::array<std::array<double, 3>, 3>& vertex, double turn);
   static Axes interpolated(const SlideCell& cell, const Turned& vectors);
+  static Axes interpolated(const SlideCell& cell, const Turned& vectors, const Weights& weights);
   /// Derivatives along tau.
   Axes rate(const Facet& facet, const Turned& vectors) const;
+  Axes rate(const Facet& facet, const Turned& vectors, const Weights& weights) const;
   static Range along_t(const Facet& facet, const Axes& a);
   static Range along_s(const Facet& facet, const Axes& a);
   Facet facet(const SlideCell& cell) const;
   void add_lean(const SlideCell& cell, Facet& facet) const;
-  static void add_lean(const SlideCell& cell, Terms& terms);
+  void add_lean(const SlideCell& cell, Grip grip, Terms& terms) const;
   static void add_lean(const Terms& terms, Range& v_n, Range& v_t, Range& v_s);
+  Range sheared_depth(const SlideCell& cell) const;
   double slip_at(const std::array<double, 3>& weight, double limit, bool largest) const;
   Range slip_limit(const SlideCell& cell) const;
   AtVertex at_vertex(std::size_t vertex, const Range& z, const Range& rho) const;
   Response response(const SlideCell& cell, const Range& rho) const;
-  /// What w does while c slides and z changes: the slip limit follows it, or, as the contact grows
-  /// and the lateral offset of the grip takes the rest, does not.
-  enum class Grip { Renewed, Kept };
   Terms terms(const SlideCell& cell, const Range& rho, Grip grip) const;
   double bound_of_response(const SlideCell& cell, const Range& rho, Grip grip) const;
   /// Derivative along tau of a quantity with these values at the vertices.
@@ -86,9 +91,8 @@ class SlideJacobian {
   // In the frame of the facet: along N, and two axes x, y in the plane.
   std::array<std::array<double, 3>, 3> direction_{};  ///< u_l
   std::array<std::array<double, 2>, 3> gradient_{};   ///< grad n_l
-  std::array<std::array<double, 3>, 3> lean_{};       ///< sigma_l
+  std::array<std::array<double, 3>, 3> lean_{};       ///< sigma_l, of coupled responses at w = 1
   bool leans_ = false;
-  double stretch_ = 1;  ///< |A|^2
 };
 
 }  // namespace palpate::fitting

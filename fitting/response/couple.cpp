@@ -14,7 +14,6 @@ constexpr double kMinDepthFraction = 0.05;  // of the depth: below it w is const
 constexpr int kCouplingSamples = 16;
 constexpr double kCouplingTolerance = 0.01;  // of the local w: tolerance of its fit
 constexpr int kAlternations = 3;  // of f^r and w; the product of two factors converges at once
-constexpr double kSameDepth = 1e-9;
 constexpr float kBeyond = 1.25F;  // of the depth: beyond it w is constant
 constexpr float kLevel = 0.05F;   // of the largest slope of w: treated as constant
 
@@ -28,12 +27,7 @@ struct Level {
 std::vector<Level> levels_of(const SiteCurves& site) {
   std::vector<Level> levels;
   for (const double depth : lateral_depths(site)) {
-    SiteCurves at_depth;
-    for (const CurvePath& path : site.paths) {
-      if (std::abs(path.lateral_depth - depth) <= kSameDepth * depth)
-        at_depth.paths.push_back(path);
-    }
-    Level level{depth, 1, lateral_paths(at_depth)};
+    Level level{depth, 1, lateral_paths(paths_at(site, depth))};
     if (!level.paths.empty()) levels.push_back(std::move(level));
   }
   return levels;
@@ -111,21 +105,9 @@ void level_off(CouplingCurve& coupling) {
   slope.back() = 0;
 }
 
-std::vector<double> lateral_depths(const SiteCurves& site) {
-  std::vector<double> depths;
-  for (const CurvePath& path : site.paths) {
-    if (path.kind == PathKind::Lateral && path.lateral_depth > 0)
-      depths.push_back(path.lateral_depth);
-  }
-  std::sort(depths.begin(), depths.end());
-  const auto same = [](double a, double b) { return b - a <= kSameDepth * b; };
-  depths.erase(std::unique(depths.begin(), depths.end(), same), depths.end());
-  return depths;
-}
-
 CoupledLateral fit_coupled(const SiteCurves& site, double depth, const CurveFitSettings& settings,
                            const std::string& where) {
-  std::vector<Level> levels = levels_of(site);
+  std::vector<Level> levels = levels_of(at_every_depth(site));
   const Level& middle = levels[levels.size() / 2];
   CoupledLateral result;
   result.lateral = fit_curve(mean_lateral(middle.paths), settings, where).curve;

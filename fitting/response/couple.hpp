@@ -20,9 +20,6 @@ struct CoupledLateral {
 /// depth. A w that grows without limit would have no bound valid at every depth.
 void level_off(CouplingCurve& coupling);
 
-/// Depths of the lateral paths of a site, m, ascending.
-std::vector<double> lateral_depths(const SiteCurves& site);
-
 /// Fits f_j(rho) = w_j f^r(rho) over the lateral depths z_j by alternating least squares in f^r and
 /// w_j, with w = 1 at the middle depth. Then w(z) is interpolated in the logarithms between the
 /// lateral depths and extrapolated like sqrt(z), the contact radius of a round tool [Hertz; Mindlin

@@ -101,29 +101,35 @@ double mesh_error(const SiteCurves& site, PathKind kind) {
   return largest;
 }
 
-double normal_error(const NodeResponse& node, ResponseKind kind, const SiteCurves& site) {
+PressingTool tool_of(const Curves& curves) {
+  return curves.tool.friction == "frictionless" ? PressingTool::Slips : PressingTool::Sticks;
+}
+
+double normal_error(const NodeResponse& node, ResponseKind kind, const SiteCurves& site,
+                    PressingTool tool) {
   const runtime::CompiledCurve rendered(node.normal);
   const LeaningResponse lean(node, kind);
   double largest = 0;
   for (const ForceSample& sample : normal_samples(site)) {
-    const double force =
-        rendered.force(sample.displacement) + lean.normal_force(sample.displacement);
+    double force = rendered.force(sample.displacement);
+    if (tool == PressingTool::Sticks) force += lean.normal_force(sample.displacement);
     largest = std::max(largest, std::abs(force - sample.force));
   }
   return largest;
 }
 
-/// The lean of a node, and its normal response again: a straight press feels both.
-void add_lean(const SiteCurves& site, const Vec3& inward, ResponseKind kind,
+/// The lean of a node, and its normal response again: a straight press that sticks feels both.
+void add_lean(const SiteCurves& site, const Vec3& inward, ResponseKind kind, PressingTool tool,
               const CurveFitSettings& curve, const std::string& where, NodeResponse& node) {
-  node.lean = fit_lean(site, inward, node, kind);
-  if (node.lean == std::array<float, 3>{}) return;
+  node.lean = fit_lean(site, inward, node, kind, tool);
+  if (node.lean == std::array<float, 3>{} || tool == PressingTool::Slips) return;
   const auto samples = less_lean(normal_samples(site), LeaningResponse(node, kind));
   node.normal = fit_curve(samples, curve, where).curve;
-  node.normal_error = normal_error(node, kind, site);
+  node.normal_error = normal_error(node, kind, site, tool);
 }
 
-NodeResponse fit_site(const SiteCurves& site, const Vec3& inward, const FitSettings& settings) {
+NodeResponse fit_site(const SiteCurves& site, const Vec3& inward, PressingTool tool,
+                      const FitSettings& settings) {
   const std::string where = site_name(site.vertex);
   const std::string normal_name = where + ", normal response";
   const CurveFitSettings pressed{settings.relative_tolerance, settings.absolute_tolerance,
@@ -137,10 +143,10 @@ NodeResponse fit_site(const SiteCurves& site, const Vec3& inward, const FitSetti
     node.lateral = std::move(coupled.lateral);
     node.coupling = std::move(coupled.coupling);
   } else {
-    const auto mean = mean_lateral(lateral_paths(site));
+    const auto mean = mean_lateral(lateral_paths(at_every_depth(site)));
     node.lateral = fit_curve(mean, curve, where + ", lateral response").curve;
   }
-  if (settings.lean) add_lean(site, inward, settings.kind, pressed, normal_name, node);
+  if (settings.lean) add_lean(site, inward, settings.kind, tool, pressed, normal_name, node);
   node.lateral_error = lateral_error(node, settings.kind, site);
   node.normal_mesh_error = mesh_error(site, PathKind::Normal);
   node.lateral_mesh_error = mesh_error(site, PathKind::Lateral);
@@ -195,7 +201,7 @@ void scale_between_nodes(const Curves& curves, Library& library) {
   for (const SiteCurves& site : curves.sites) {
     NodeResponse& node = library.responses[static_cast<std::size_t>(site.vertex)];
     if (node.status != ResponseStatus::Fitted) continue;
-    node.normal_error = normal_error(node, library.kind, site);
+    node.normal_error = normal_error(node, library.kind, site, tool_of(curves));
     node.lateral_error = lateral_error(node, library.kind, site);
   }
 }
@@ -226,7 +232,7 @@ Library fit(const Body& body, const Curves& curves, const FitSettings& settings)
     if (!usable(site, curves.depth)) continue;
     const auto vertex = static_cast<std::size_t>(site.vertex);
     NodeResponse& node = library.responses[vertex];
-    node = fit_site(site, library.inward[vertex], settings);
+    node = fit_site(site, library.inward[vertex], tool_of(curves), settings);
     if (library.relaxes()) node.relaxation = relaxation_fractions(site, curves.relaxation);
     ++fitted;
   }

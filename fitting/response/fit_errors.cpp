@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fitting/response/couple.hpp"
 #include "fitting/response/site_samples.hpp"
 #include "format/to_index.hpp"
 #include "runtime/response_curve.hpp"
@@ -30,23 +29,16 @@ double largest_miss(const runtime::CompiledCurve& curve, double weight, const Sa
   return largest;
 }
 
-/// The lateral paths of one depth.
-SiteCurves at_depth(const SiteCurves& site, double depth) {
-  SiteCurves part;
-  for (const CurvePath& path : site.paths)
-    if (path.kind == PathKind::Lateral && path.lateral_depth == depth) part.paths.push_back(path);
-  return part;
-}
-
 /// Largest miss of the means that the lateral response stands for, N.
-double lateral_miss(const NodeResponse& node, ResponseKind kind, const SiteCurves& site) {
+double lateral_miss(const NodeResponse& node, ResponseKind kind, const SiteCurves& whole) {
+  const SiteCurves site = at_every_depth(whole);
   const runtime::CompiledCurve lateral(node.lateral);
   if (kind == ResponseKind::Decoupled)
     return largest_miss(lateral, 1, mean_lateral(lateral_paths(site)));
   const runtime::CompiledCurve weight(node.coupling.curve, static_cast<double>(node.coupling.base));
   double largest = 0;
   for (const double depth : lateral_depths(site)) {
-    const auto paths = lateral_paths(at_depth(site, depth));
+    const auto paths = lateral_paths(paths_at(site, depth));
     if (!paths.empty())
       largest = std::max(largest, largest_miss(lateral, weight.force(depth), mean_lateral(paths)));
   }

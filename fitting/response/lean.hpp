@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "fitting/response/curve_fit.hpp"
@@ -13,13 +14,14 @@
 
 namespace palpate::fitting {
 
-/// Longest lean that is fitted. Beyond it a press slips on most tissue, and bounds grow.
-inline constexpr double kMostFittedLean = 0.2;
+/// Longest lean that is fitted, at any depth. Beyond it a press slips on most tissue, and bounds
+/// grow.
+inline constexpr double kMostFittedLean = 0.3;
 /// A shorter lean is none: a force a thousandth off is not felt.
 inline constexpr double kLeastLean = 1e-3;
 
 /// What the lean sigma of a node adds to its response, docs/theory-fitting.md (2d): a straight
-/// press shears the tissue by |sigma| for each depth, and the contact that grows meanwhile holds
+/// press shears the tissue by w |sigma| for each depth, and the contact that grows meanwhile holds
 /// tissue without stress. The runtime renders it with steps of any size; here they are
 /// infinitesimal.
 class LeaningResponse {
@@ -27,7 +29,7 @@ class LeaningResponse {
   LeaningResponse(const NodeResponse& node, ResponseKind kind);
 
   double energy(double z) const;        ///< work of the normal force below, J
-  double normal_force(double z) const;  ///< |sigma| w h, N
+  double normal_force(double z) const;  ///< w |sigma| w h, N
   /// That of a straight press across its direction, N: -w h sigma/|sigma|.
   Vec3 transverse_force(double z) const;
   /// By how much a drag d (m) at the depth z (m) along a unit direction across the press changes
@@ -51,15 +53,26 @@ class LeaningResponse {
   runtime::CompiledCurve coupling_;  ///< no pieces: w = 1
 };
 
-/// The lean that brings the transverse force of the straight presses of a site closest to their
-/// samples: the least squares of the differences over the normal force, with the lateral response
-/// of the node. Its direction is that of the mean of the transverse forces. 0 where it is shorter
-/// than kLeastLean; cut at kMostFittedLean.
+/// The lean of a site by its drags: how the force along the press direction changes with the force
+/// of a drag, docs/theory-fitting.md (2e). Least squares over the normal force of the lateral
+/// depth. Absent where the drags do not span the plane across the press, or are too few to tell
+/// what is proportional to the force of the drag from what is not.
+std::optional<Vec3> lean_of_drags(const SiteCurves& site, const Vec3& inward,
+                                  const NodeResponse& node, ResponseKind kind);
+
+/// The tool of the straight presses of a campaign. One without friction shears nothing: its normal
+/// force is g, and its transverse force tells nothing of the lean.
+enum class PressingTool { Slips, Sticks };
+
+/// The lean of a site: that of its drags; where these do not tell it and the tool sticks, the lean
+/// that brings the transverse force of its straight presses closest to their samples, by the least
+/// squares of the differences over the normal force, along the mean of the transverse forces. 0
+/// where it is shorter than kLeastLean; cut at kMostFittedLean.
 /// @param inward  press direction of the site, unit. @param node  with its lateral response
 std::array<float, 3> fit_lean(const SiteCurves& site, const Vec3& inward, const NodeResponse& node,
-                              ResponseKind kind);
+                              ResponseKind kind, PressingTool tool);
 
-/// Normal samples less what the lean adds to them.
+/// Normal samples of a tool that sticks less what the lean adds to them.
 std::vector<ForceSample> less_lean(std::vector<ForceSample> samples, const LeaningResponse& lean);
 
 }  // namespace palpate::fitting

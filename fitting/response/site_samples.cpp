@@ -9,6 +9,8 @@ namespace {
 
 /// Relative distance below which two displacements differ only by rounding.
 constexpr double kSame = 1e-9;
+/// Unit vectors whose difference is shorter are one direction.
+constexpr double kSameDirection = 1e-6;
 
 /// J, what body and contact have stored; NaN when unknown.
 double stored(const CurveSample& sample) {
@@ -89,6 +91,43 @@ double normal_reach(const SiteCurves& site) {
     reach = std::max(reach, sample.displacement);
   }
   return reach;
+}
+
+std::vector<double> lateral_depths(const SiteCurves& site) {
+  std::vector<double> depths;
+  for (const CurvePath& path : site.paths) {
+    if (path.kind == PathKind::Lateral && path.lateral_depth > 0)
+      depths.push_back(path.lateral_depth);
+  }
+  std::sort(depths.begin(), depths.end());
+  const auto same = [](double a, double b) { return b - a <= kSame * b; };
+  depths.erase(std::unique(depths.begin(), depths.end(), same), depths.end());
+  return depths;
+}
+
+SiteCurves paths_at(const SiteCurves& site, double lateral_depth) {
+  SiteCurves there;
+  for (const CurvePath& path : site.paths)
+    if (path.kind == PathKind::Lateral &&
+        std::abs(path.lateral_depth - lateral_depth) <= kSame * lateral_depth)
+      there.paths.push_back(path);
+  return there;
+}
+
+SiteCurves at_every_depth(const SiteCurves& site) {
+  const std::vector<double> depths = lateral_depths(site);
+  const auto recurs = [&](const CurvePath& path) {
+    return std::all_of(depths.begin(), depths.end(), [&](double depth) {
+      const SiteCurves there = paths_at(site, depth);
+      return std::any_of(there.paths.begin(), there.paths.end(), [&](const CurvePath& other) {
+        return norm(other.direction - path.direction) < kSameDirection;
+      });
+    });
+  };
+  SiteCurves recurring;
+  for (const CurvePath& path : site.paths)
+    if (path.kind == PathKind::Lateral && recurs(path)) recurring.paths.push_back(path);
+  return recurring.paths.empty() ? site : recurring;
 }
 
 std::vector<std::vector<ForceSample>> lateral_paths(const SiteCurves& site) {

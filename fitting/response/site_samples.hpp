@@ -17,6 +17,16 @@ std::vector<ForceSample> normal_samples(const SiteCurves& site);
 /// Largest displacement of the normal paths, m; 0 without any.
 double normal_reach(const SiteCurves& site);
 
+/// Depths of the lateral paths of a site, m, ascending.
+std::vector<double> lateral_depths(const SiteCurves& site);
+
+/// The lateral paths of a site at one of these depths.
+SiteCurves paths_at(const SiteCurves& site, double lateral_depth);
+
+/// The lateral paths whose direction is dragged at every lateral depth; all where none is. Depths
+/// can then be compared: tissue may be stiffer in one direction than in another.
+SiteCurves at_every_depth(const SiteCurves& site);
+
 /// f^r of each lateral path: (displacement, (force - force at its first sample) . direction).
 std::vector<std::vector<ForceSample>> lateral_paths(const SiteCurves& site);
 

@@ -343,9 +343,14 @@ Library leaning_library(unsigned seed) {
   Library leaning = seed % 3 == 0   ? relaxing_library(seed)
                     : seed % 3 == 1 ? coupled_library(seed)
                                     : library(seed);
-  for (NodeResponse& node : leaning.responses)
-    if (node.status != ResponseStatus::Hole)
-      for (float& component : node.lean) component = static_cast<float>(random.between(-0.2, 0.2));
+  for (NodeResponse& node : leaning.responses) {
+    if (node.status == ResponseStatus::Hole) continue;
+    for (float& component : node.lean) component = static_cast<float>(random.between(-0.2, 0.2));
+    if (leaning.kind == ResponseKind::Decoupled) continue;
+    node.coupling.curve.slope.back() = 0;  // w ends, so that w sigma has a bound
+    const double most = node.coupling.largest();
+    for (float& component : node.lean) component /= static_cast<float>(most);
+  }
   return leaning;
 }
 

@@ -69,6 +69,11 @@ void describe_indentation(V& v, fem::IndentationSettings& s) {
   v.quantities(
       s.azimuths, Dimension::Angle,
       {"azimuths", "directions of the lateral paths in the tangent plane", kOptional, kAny});
+  v.flag(
+      s.drag_across,
+      {"drag_across",
+       "with a single azimuth, a shorter lateral path across it at the middle lateral depth too: "
+       "by it `fit` knows how the response leans"});
   v.number(s.force_tolerance, {"force_tolerance",
                                "relative tolerance of the tool force at equilibrium",
                                kOptional,

@@ -204,6 +204,89 @@ TEST_F(Coupled, MicroSlipBeyondATenthOfTheToolsRadiusGoesIntoTheLateralOffset) {
   EXPECT_GT(crept, 100);
 }
 
+/// Springs whose lateral ones, w k, are tilted by w sigma, w = a + b z.
+class TiltedPlate : public Coupled {
+ protected:
+  static constexpr double kBase = 0.3, kGrowth = 150, kShear = 120;  // 1, 1/m, N/m
+  static constexpr Vec3 kLean{0.15, -0.08, 0};
+
+  static Library tilted() {
+    Library library = plate(2, 0.04, [](const Vec3&) { return wall_response(170, kShear); });
+    library.kind = ResponseKind::Coupled;
+    library.tool_radius = 0.05;
+    const auto growth = static_cast<float>(kGrowth);
+    for (NodeResponse& node : library.responses) {
+      node.coupling = {static_cast<float>(kBase), {{0, 0.006F, 0.008F}, {growth, growth, 0}}};
+      node.lean = {static_cast<float>(kLean[0]), static_cast<float>(kLean[1]), 0};
+    }
+    return library;
+  }
+  static double w(double z) { return kBase + kGrowth * z; }
+  /// The integral of w^2 up to z.
+  static double squares(double z) {
+    return (std::pow(w(z), 3) - std::pow(kBase, 3)) / (3 * kGrowth);
+  }
+  /// Moves the tip along the normal to a depth in small steps.
+  static LocalResponse press(LocalModel& model, double from, double to, int steps) {
+    runtime::ToolPieces pieces;
+    LocalResponse r;
+    for (int k = 1; k <= steps; ++k) {
+      const double z = from + (to - from) * k / steps;
+      Deflection d = model.deflection(model.contact_point() + z * model.normal());
+      r = model.respond(d, pieces);
+      model.renew_grip(d, r, pieces);
+    }
+    return r;
+  }
+
+  const Surface tilted_{tilted()};
+};
+
+TEST_F(TiltedPlate, APressShearsByALeanThatGrowsWithTheContact) {
+  // d(w q) = -w^2 sigma dz, as what comes into contact is not sheared.
+  for (const double z : {0.001, 0.003, 0.0055}) {
+    LocalModel model(tilted_, {3, {0.2, 0.5, 0.3}}, 0);
+    const LocalResponse r = press(model, 0, z, 4000);
+    const Vec3 n = model.normal(), lateral = -kShear * squares(z) * kLean;
+    const double normal = r.normal_force - w(z) * dot(lateral, kLean);
+    EXPECT_LT(norm(r.force - normal * n - lateral), 1e-3 * norm(lateral));
+  }
+}
+
+TEST_F(TiltedPlate, ARetreatLosesTheLeanAsThePressGainedIt) {
+  // d q = -w sigma dz on the way back: what lets go takes no shear with it.
+  LocalModel model(tilted_, {3, {0.2, 0.5, 0.3}}, 0);
+  press(model, 0, 0.005, 4000);
+  const LocalResponse r = press(model, 0.005, 0.004, 1000);
+  const auto integral = [](double z) { return kBase * z + 0.5 * kGrowth * z * z; };
+  const double sheared = squares(0.005) / w(0.005) - (integral(0.005) - integral(0.004));
+  const Vec3 n = model.normal(), lateral = -kShear * w(0.004) * sheared * kLean;
+  EXPECT_LT(norm(r.force - dot(r.force, n) * n - lateral), 1e-3 * norm(lateral));
+  EXPECT_NEAR(dot(r.force, n), r.normal_force - w(0.004) * dot(lateral, kLean), 1e-4);
+}
+
+TEST_F(TiltedPlate, ANewLeanTakesNothingFromTheLateralDeflection) {
+  for (int trial = 0; trial < 100; ++trial) {
+    LocalModel model(tilted_, {3, {0.2, 0.5, 0.3}}, 0);
+    const double held = between(0.0005, 0.0055), z = between(0.0005, 0.0055);
+    model.set_grip({held, {}});
+    const Vec3 x = tip(model, z, between(0.0002, 0.002));
+    Deflection d = model.deflection(x);
+    runtime::ToolPieces pieces;
+    LocalResponse r = model.respond(d, pieces);
+    const double before = r.energy;
+    const Vec3 q = d.lateral * d.tangent;
+    model.renew_grip(d, r, pieces);
+    if (z < held) {  // what lets go takes no shear with it
+      EXPECT_LT(norm(d.lateral * d.tangent - q), 1e-15);
+    }
+    EXPECT_LE(r.energy, before);
+    // The model at x is that of the deflection: nothing of the shear is lost.
+    EXPECT_LT(norm(at(model, x).force - r.force), 1e-12);
+    EXPECT_NEAR(at(model, x).energy, r.energy, 1e-15);
+  }
+}
+
 TEST_F(Coupled, RefusesAWeightThatStartsAtNothing) {
   Library broken = library_;
   broken.responses[3].coupling.base = 0;

@@ -54,6 +54,7 @@ class LocalModelTest : public ::testing::Test {
     std::uniform_real_distribution<double> any(-1, 1);
     const SurfacePoint p = random_point();
     LocalModel model(body, p, 0.0005);
+    model.set_grip({body.leans() ? 0.003 : 0.0, {}});
     const Vec3 x = random_tip(model);
     model.set_lateral_offset(0.002 * Vec3{any(random_), any(random_), any(random_)});
     const Vec3 anchor = model.contact_point() + model.lateral_offset();
@@ -66,6 +67,7 @@ class LocalModelTest : public ::testing::Test {
       SurfacePoint q = p;
       for (std::size_t l = 0; l < 3; ++l) q.natural[l] += s * dot(e.gradient[l], d);
       LocalModel there(body, q, 0.0005);
+      there.set_grip(model.grip());
       there.set_lateral_offset(anchor + s * rate - there.contact_point());
       return energy(there, x);
     };

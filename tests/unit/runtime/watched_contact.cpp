@@ -74,18 +74,18 @@ ModelEnergy model_energy(const Library& library, const runtime::ContactObservati
   const double depth = dot(r, model.normal);
   ModelEnergy energy;
   const double z = depth - model.offset;
-  Vec3 along = model.normal;  // of a press without lateral deflection
+  const std::array<double, 3> weights = lateral_weights(library, model.point, model.grip);
+  Vec3 sigma{};
   for (std::size_t l = 0; l < 3; ++l) {
     const auto& lean = library.responses[static_cast<std::size_t>(t[l])].lean;
     const Vec3 whole{static_cast<double>(lean[0]), static_cast<double>(lean[1]),
                      static_cast<double>(lean[2])};
-    along = along + model.point.natural[l] * (whole - dot(whole, model.normal) * model.normal);
+    sigma = sigma + weights[l] * (whole - dot(whole, model.normal) * model.normal);
   }
-  energy.lateral_deflection =
-      r - z * along - model.offset * model.normal - model.lateral_offset - model.grip.micro_slip;
+  energy.lateral_deflection = r - depth * model.normal - (z - 0.5 * model.grip.depth) * sigma -
+                              model.lateral_offset - model.grip.micro_slip;
   const double rho = norm(energy.lateral_deflection);
   energy.depth = z;
-  const std::array<double, 3> weights = lateral_weights(library, model.point, model.grip);
   for (std::size_t l = 0; l < 3; ++l) {
     const NodeResponse& node = library.responses[static_cast<std::size_t>(t[l])];
     const CurvePoint g = curve_at(node.normal, z);

@@ -169,6 +169,7 @@ class SettingsText {
         i.lateral_increments, i.force_tolerance, i.refine_under_tool);
     add(i.lateral_depths);
     add(i.azimuths);
+    add(i.drag_across);
   }
 
   std::ostringstream out_;

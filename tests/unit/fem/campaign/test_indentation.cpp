@@ -225,6 +225,35 @@ TEST_F(Indentation, LateralForceOpposesTheMotionAndGrows) {
   }
 }
 
+TEST_F(Indentation, DragsAcrossItsOnlyAzimuthAtTheMiddleDepth) {
+  CampaignSettings s = settings();
+  s.indentation.increments = 4;
+  s.indentation.lateral_depths = {0.001, 0.002, 0.003};
+  s.indentation.drag_across = true;
+  const auto paths_with = [&](const std::vector<double>& azimuths) {
+    s.indentation.azimuths = azimuths;
+    const CampaignContext context(*body_, s, Engine::SharedFactor);
+    const SiteCurves site = solve_site(context, centre_vertex(*body_), nullptr);
+    EXPECT_EQ(site.status, SiteStatus::Complete) << site.reason;
+    return site.paths;
+  };
+  const auto paths = paths_with({0.3});
+  ASSERT_EQ(paths.size(), 5u);
+  const CurvePath &along = paths[2], &across = paths[4];
+  EXPECT_EQ(across.lateral_depth, 0.002);
+  EXPECT_NEAR(dot(across.direction, along.direction), 0, 1e-12);
+  EXPECT_NEAR(dot(across.direction, paths[0].direction), 0, 1e-12);
+  ASSERT_EQ(across.samples.size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(across.samples[i].displacement, along.samples[i].displacement);
+    // The block is the same in both directions.
+    EXPECT_NEAR(dot(across.samples[i].force, across.direction),
+                dot(along.samples[i].force, along.direction),
+                0.03 * norm(along.samples.front().force));
+  }
+  EXPECT_EQ(paths_with({0, 0.5 * M_PI}).size(), 7u);
+}
+
 TEST_F(Indentation, ForceIsThatOfNewtonOnTheWholeBodyWithinTheTolerance) {
   const double tolerance = settings().indentation.force_tolerance;
   CampaignSettings exact = settings();

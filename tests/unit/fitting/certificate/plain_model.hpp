@@ -65,30 +65,42 @@ class PlainModel {
     return unit(w[0] * u_[0] + w[1] * u_[1] + w[2] * u_[2]);
   }
 
-  Vec3 lean(const Vec3& c) const {
+  /// sigma of a contact that holds this depth.
+  Vec3 lean(const Vec3& c, double held) const {
     const auto w = natural(c);
-    const Vec3 sum = w[0] * lean_[0] + w[1] * lean_[1] + w[2] * lean_[2], n = direction(c);
+    Vec3 sum{};
+    for (std::size_t l = 0; l < 3; ++l) sum = sum + w[l] * weight_at(l, held) * lean_[l];
+    const Vec3 n = direction(c);
     return sum - dot(sum, n) * n;
   }
 
-  /// held: depth that the contact holds, of coupled responses; NaN: the present one.
-  Contact at(const Vec3& x, const Vec3& c, double d0, double held = kPresent) const {
+  /// What a straight press to z shears where the contact holds a depth.
+  Vec3 shear(const Vec3& c, double z, double held) const {
+    return (coupled() ? z - 0.5 * held : z) * lean(c, held);
+  }
+
+  /// held: depth that the contact holds, of coupled responses; NaN: the present one. before: the
+  /// depth that it held as the tool moved; NaN: the present one.
+  Contact at(const Vec3& x, const Vec3& c, double d0, double held = kPresent,
+             double before = kPresent) const {
     const auto w = natural(c);
     Contact state;
     state.n = direction(c);
     const Vec3 delta = x - c - d0 * state.n;
     state.z = dot(state.n, delta);
-    const Vec3 lateral = delta - state.z * (state.n + lean(c));
+    const double holds = std::isnan(held) ? state.z : held;
+    const Vec3 sheared = shear(c, state.z, std::isnan(before) ? holds : before);
+    const Vec3 lateral = delta - state.z * state.n - sheared;
     state.rho = norm(lateral);
     if (state.rho > 0) state.t = (1 / state.rho) * lateral;
     for (std::size_t l = 0; l < 3; ++l) {
-      const double weight = weight_at(l, std::isnan(held) ? state.z : held);
+      const double weight = weight_at(l, holds);
       const double H = lateral_[l].energy(state.rho);
       state.g += w[l] * normal_[l].force(state.z);
       state.h += w[l] * weight * lateral_[l].force(state.rho);
       state.energy += w[l] * (normal_[l].energy(state.z) + weight * H);
     }
-    const double against = state.h * dot(state.t, lean(c));
+    const double against = state.h * dot(state.t, lean(c, holds));
     state.force = (state.g - against) * state.n + state.h * state.t;
     return state;
   }
@@ -110,10 +122,10 @@ class PlainModel {
   Vec3 in_plane(const Vec3& t) const { return unit(t - dot(t, facet_) * facet_); }
 
   /// The contact point after the slide has come to rest: moved until rho = rho_s.
-  std::optional<Vec3> slid(const Vec3& x, Vec3 c, double d0, double mu,
-                           double held = kPresent) const {
+  std::optional<Vec3> slid(const Vec3& x, Vec3 c, double d0, double mu, double held = kPresent,
+                           double before = kPresent) const {
     for (int i = 0; i < 400; ++i) {
-      const Contact state = at(x, c, d0, held);
+      const Contact state = at(x, c, d0, held, before);
       const double depth = std::isnan(held) ? state.z : held;
       const double excess = state.rho - slip_limit(c, depth, mu * state.g);
       if (excess < 1e-16) return c;
@@ -121,6 +133,8 @@ class PlainModel {
     }
     return std::nullopt;
   }
+
+  bool coupled() const { return !weight_[0].pieces().empty(); }
 
  private:
   double weight_at(std::size_t l, double z) const {
@@ -186,7 +200,7 @@ inline Start random_start(std::mt19937& engine, const PlainModel& model, double 
   const Vec3 n = model.direction(start.c);
   const Vec3 any = unit({u(engine) - 0.5, u(engine) - 0.5, u(engine) - 0.5});
   const Vec3 t = unit(any - dot(any, n) * n);
-  start.x = start.c + (z + start.d0) * n + lateral(start.c, z) * t + z * model.lean(start.c);
+  start.x = start.c + (z + start.d0) * n + lateral(start.c, z) * t + model.shear(start.c, z, z);
   return start;
 }
 
@@ -217,10 +231,10 @@ inline void try_slides(std::mt19937& engine, const Library& library, double mu,
     for (int k = 0; k < 12; ++k) {
       const Vec3 step = 1e-7 * unit({normal(engine), normal(engine), normal(engine)});
       const double held = held_depth(before, step, k);
-      const auto c = model.slid(start.x + step, start.c, start.d0, mu, held);
+      const auto c = model.slid(start.x + step, start.c, start.d0, mu, held, before.z);
       ASSERT_TRUE(c);
       if (!model.inside(*c) || norm(*c - start.c) < 1e-10) continue;
-      const Contact after = model.at(start.x + step, *c, start.d0, held);
+      const Contact after = model.at(start.x + step, *c, start.d0, held, before.z);
       const double quotient = norm(after.force - before.force) / norm(step);
       EXPECT_LE(quotient, bound * (1 + 1e-4));
       census.closest = std::max(census.closest, quotient / bound);
@@ -252,7 +266,7 @@ inline SlidingState random_slide(std::mt19937& engine, const PlainModel& model,
   const Vec3 t = unit(tau - (dot(tau, n) / dot(frame.normal, n)) * frame.normal);
   const double g = model.at(state.start.c + z * n, state.start.c, 0).g;
   const double rho = model.slip_limit(state.start.c, z, element.friction * g);
-  state.start.x = state.start.c + (z + d0) * n + rho * t + z * model.lean(state.start.c);
+  state.start.x = state.start.c + (z + d0) * n + rho * t + model.shear(state.start.c, z, z);
   const SlideCell::Natural place{a, b, 1 - a - b};
   state.cell = {{place, place, place}, {azimuth, azimuth}, {z, z}, {z + d0, z + d0}};
   return state;
@@ -267,9 +281,9 @@ inline double steepest_step(std::mt19937& engine, const PlainModel& model, const
   for (int k = 0; k < 400; ++k) {
     const Vec3 step = 1e-8 * unit({normal(engine), normal(engine), normal(engine)});
     const double held = held_depth(before, step, k);
-    const auto c = model.slid(start.x + step, start.c, start.d0, mu, held);
+    const auto c = model.slid(start.x + step, start.c, start.d0, mu, held, before.z);
     if (!c || norm(*c - start.c) < 1e-11) continue;
-    const Vec3 after = model.at(start.x + step, *c, start.d0, held).force;
+    const Vec3 after = model.at(start.x + step, *c, start.d0, held, before.z).force;
     steepest = std::max(steepest, norm(after - before.force) / norm(step));
   }
   return steepest;

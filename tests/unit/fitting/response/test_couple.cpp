@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "fitting/response/site_samples.hpp"
 #include "runtime/response_curve.hpp"
 
 namespace palpate::fitting {

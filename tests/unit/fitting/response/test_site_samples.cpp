@@ -119,5 +119,24 @@ TEST(SiteSamples, AShortLateralPathDoesNotMakeTheMeanJump) {
   EXPECT_NEAR(samples[2].force, 0.12 + 0.08, 1e-12);  // continues with the slope of the longer one
 }
 
+TEST(SiteSamples, OfEveryDepthLeaveOutADirectionThatIsDraggedAtOneOnly) {
+  SiteCurves site;
+  const auto add = [&](double depth, const Vec3& direction) {
+    site.paths.push_back({PathKind::Lateral, depth, direction, {}});
+  };
+  site.paths.push_back({PathKind::Normal, 0, {0, 0, -1}, {}});
+  add(0.001, {1, 0, 0});
+  add(0.002, {1, 0, 0});
+  add(0.002, {0, 1, 0});
+  EXPECT_EQ(at_every_depth(site).paths.size(), 2u);
+  EXPECT_EQ(paths_at(site, 0.002).paths.size(), 2u);
+  add(0.001, {0, 1, 0});
+  EXPECT_EQ(at_every_depth(site).paths.size(), 4u);
+  // Where no direction recurs, all stand for the site.
+  site.paths.erase(site.paths.begin() + 2);
+  site.paths.pop_back();
+  EXPECT_EQ(at_every_depth(site).paths.size(), site.paths.size());
+}
+
 }  // namespace
 }  // namespace palpate::fitting

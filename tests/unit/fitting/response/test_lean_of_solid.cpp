@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Beside a free side of a block: drags from one depth of a press without friction foretell how a
+// press of a tool that sticks shears the solid, at every depth.
+#include <gtest/gtest.h>
+
+#include "fem/campaign/campaign.hpp"
+#include "fitting/response/fit.hpp"
+#include "fitting/response/lean.hpp"
+#include "format/to_index.hpp"
+#include "tests/support/block_body.hpp"
+
+namespace palpate::fitting {
+namespace {
+
+constexpr double kDepth = 0.004;
+
+Body beside_a_side() {
+  return test::make_block({-0.008, -0.0055, -0.003, -0.001, 0.001, 0.003, 0.006, 0.012, 0.03},
+                          test::graded(0.03, 0.005, 0.0025, 1.5),
+                          {-0.03, -0.02, -0.012, -0.006, -0.003, 0});
+}
+
+fem::CampaignSettings settings(const Body& body) {
+  fem::CampaignSettings s;
+  s.materials = {{"tissue", {10e3, 0.47}}};
+  s.sites = {test::site_nearest(body, -0.001)};
+  s.indentation.depth = kDepth;
+  s.indentation.increments = 5;
+  s.indentation.lateral_depths = {0.6 * kDepth};
+  s.indentation.lateral_travel = 0.4 * kDepth;
+  s.indentation.lateral_increments = 3;
+  s.indentation.drag_across = true;
+  return s;
+}
+
+Curves solved(const Body& body, const fem::CampaignSettings& s) {
+  fem::CampaignReport report;
+  Curves curves = fem::run_campaign(body, s, report);
+  EXPECT_EQ(curves.sites.front().status, SiteStatus::Complete) << curves.sites.front().reason;
+  return curves;
+}
+
+TEST(LeanOfSolid, OfDragsIsThatOfAPressThatSticks) {
+  const Body body = beside_a_side();
+  const fem::CampaignSettings slipping = settings(body);
+  fem::CampaignSettings sticking = slipping;
+  sticking.indentation.friction = fem::ToolFriction::NoSlip;
+  sticking.indentation.increments = 32;
+  sticking.indentation.lateral_depths.clear();
+  const Curves curves = solved(body, slipping), direct = solved(body, sticking);
+
+  FitSettings fitting;
+  fitting.kind = ResponseKind::Coupled;
+  const auto vertex = to_index(slipping.sites.front());
+  const NodeResponse node = fit(body, curves, fitting).responses[vertex];
+  const LeaningResponse lean(node, ResponseKind::Coupled);
+  const Vec3 inward = body.response.inward[vertex];
+  const auto transverse = [&](const CurveSample& sample) {
+    return sample.force - dot(sample.force, inward) * inward;
+  };
+  for (const CurveSample& sample : direct.sites.front().paths.front().samples) {
+    if (sample.displacement < 0.3 * kDepth) continue;
+    const Vec3 sheared = transverse(sample);
+    EXPECT_GT(norm(sheared), 0.04 * norm(sample.force));
+    EXPECT_LT(norm(lean.transverse_force(sample.displacement) - sheared), 0.15 * norm(sheared))
+        << sample.displacement;
+  }
+  // The press without friction does not show it.
+  const Vec3 end = transverse(curves.sites.front().paths.front().samples.back());
+  EXPECT_LT(norm(end), 0.5 * norm(lean.transverse_force(kDepth)));
+}
+
+}  // namespace
+}  // namespace palpate::fitting
