@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "format/checks.hpp"
 #include "format/crash_safe_file.hpp"
 #include "format/flat_file.hpp"
 #include "format/flat_library.hpp"
@@ -109,6 +110,11 @@ void get_fields(const FlatReader& reader, Deformation& d) {
   d.press_modes = numbers(reader, "/press/modes", sites * depths * modes);
   d.lateral_local = numbers(reader, "/lateral/local", sites * lateral * kLateralComponents * knots);
   d.lateral_modes = numbers(reader, "/lateral/modes", sites * lateral * kTangents * modes);
+  if (reader.has("/press/slips")) {
+    const auto slips = reader.array<std::uint8_t>("/press/slips", 1);
+    Checks(reader).numbers("/press/slips", slips, rules::kFlag);
+    d.press_slips = slips.front() == 1;
+  }
   if (!reader.has("/lateral/anisotropic")) return;
   d.anisotropic = reader.array<std::int16_t>(
       "/lateral/anisotropic", sites * lateral * kTangents * kAnisotropicComponents * knots);
@@ -157,6 +163,7 @@ void write_deformation(const std::filesystem::path& file, const Deformation& d) 
   writer.array("/donor/site", d.donor);
   writer.array("/donor/weight", d.donor_weight);
   writer.array("/press/depth", d.depths);
+  if (d.press_slips) writer.array("/press/slips", std::vector<std::uint8_t>{1});
   writer.array("/press/local", d.press_local);
   writer.array("/press/modes", d.press_modes);
   writer.array("/lateral/depth", d.lateral_depths);

@@ -60,6 +60,9 @@ struct Deformation {
   std::vector<std::int32_t> donor;         ///< row of sites
   std::vector<float> donor_weight;
 
+  /// The presses are those of a tool without friction, under which the skin slides where the
+  /// responses lean: a tool that sticks has sheared it as far as it would slide.
+  bool press_slips = false;
   std::vector<float> press_local;    ///< (S, K, 2, J) m
   std::vector<float> lateral_local;  ///< (S, L, 3, J) 1
   /// What differs between directions, times anisotropic_scale. Empty where a file has none.

@@ -447,6 +447,7 @@ void ContactState::commit(Candidate& next, double energy_before) noexcept {
   seen_.deflection = next.deflection;
   seen_.grip = next.model.grip();
   seen_.lateral_displacement = next.model.lateral_displacement(next.deflection);
+  seen_.shear = next.model.shear(next.deflection);
   seen_.lateral_distance = next.model.lateral_distance(next.deflection);
   seen_.offset = next.model.offset();
   seen_.lateral_offset = next.model.lateral_offset();

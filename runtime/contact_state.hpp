@@ -35,7 +35,8 @@ struct ContactObservation {
   Vec3 contact_point{};
   Vec3 normal{};
   Deflection deflection;
-  Vec3 lateral_displacement{};  ///< q + sigma z + e, m: of the tip from the anchor, across n
+  Vec3 lateral_displacement{};  ///< q + e and the shear, m: of the tip from the anchor, across n
+  Vec3 shear{};                 ///< of a straight press, by the lean, m
   double lateral_distance = 0;  ///< its length, m
   double offset = 0;            ///< d0, m
   Vec3 lateral_offset{};        ///< s, m

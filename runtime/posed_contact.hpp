@@ -100,6 +100,7 @@ class PosedContact {
       touch.normal = seen.normal;
       touch.depth = seen.deflection.depth + seen.offset;
       touch.lateral = seen.lateral_displacement;
+      touch.shear = seen.shear;
       touch.tip =
           seen.contact_point + touch.depth * seen.normal + touch.lateral + seen.lateral_offset;
     }

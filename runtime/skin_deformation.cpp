@@ -331,7 +331,8 @@ void SkinDeformation::add_modes(const Shape& shape, std::size_t begin, std::size
     for (std::size_t i = 0; i < count; ++i) u[i] += shape.mode[m] * static_cast<float>(of(m)[i]);
 }
 
-void SkinDeformation::displace(const Touch& touch, double* positions) const noexcept {
+void SkinDeformation::displace(Touch touch, double* positions) const noexcept {
+  if (d_.press_slips) touch.lateral = touch.lateral - touch.shear;
   const std::size_t count = d_.positions.size();
   const bool touches = touch.point.element >= 0;
   Shape shape;

@@ -25,7 +25,7 @@ class SkinDeformation {
 
   /// The displaced vertices in the world, m, three numbers each: 3 W. noexcept, allocation-free;
   /// the time is proportional to the number of vertices times that of modes.
-  void displace(const Touch& touch, double* positions) const noexcept;
+  void displace(Touch touch, double* positions) const noexcept;
 
   static constexpr std::size_t kMostModes = 512, kMostKnots = 64, kMostDonors = 40;
 

@@ -22,6 +22,7 @@ struct Touch {
   Vec3 normal{};         ///< n, unit, into the body
   double depth = 0;      ///< n . (x - c), m: of the tip below the surface at rest
   Vec3 lateral{};        ///< m: of the tip from the anchor, across n
+  Vec3 shear{};          ///< m: by how much a tool without friction slides as it is pressed
   Vec3 tip{};            ///< x, m
   Pose pose;
 };

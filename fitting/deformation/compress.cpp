@@ -81,7 +81,10 @@ class Compression {
     normals_ = inward_normals(d_.positions, d_.triangles);
   }
 
-  void set_tool(const ToolDescription& tool) { d_.tool_edge_radius = tool.edge_radius; }
+  void set_tool(const ToolDescription& tool) {
+    d_.tool_edge_radius = tool.edge_radius;
+    d_.press_slips = tool.friction == "frictionless";
+  }
 
   void choose_depths(const SiteFields& site);
   bool add(const SiteFields& site);

@@ -33,6 +33,7 @@ Deformation sample_deformation() {
   d.donor_offset = {0, 1, 2, 4};
   d.donor = {0, 1, 0, 1};
   d.donor_weight = {1, 1, 0.25F, 0.75F};
+  d.press_slips = true;
   d.press_local = {6e-3F, 0, 1e-3F, 0, 6e-3F, 0, 2e-3F, 0};
   d.lateral_local.assign(12, 0.5F);
   for (std::int16_t i = 0; i < 104; ++i) d.anisotropic.push_back(static_cast<std::int16_t>(-i * i));
@@ -60,6 +61,7 @@ TEST(DeformationFile, IsTheSameWhenReadAgain) {
   EXPECT_EQ(read.vertex_of, written.vertex_of);
   EXPECT_EQ(read.depths, written.depths);
   EXPECT_EQ(read.lateral_depths, written.lateral_depths);
+  EXPECT_TRUE(read.press_slips);
   EXPECT_EQ(read.knots, written.knots);
   ASSERT_EQ(read.sites.size(), 2U);
   EXPECT_EQ(read.sites[1].tangent, (Vec3{0, 1, 0}));

@@ -93,7 +93,7 @@ TEST(FlatFile, RefusesWhatIsNotOneOrOfALaterVersion) {
   EXPECT_THAT(problem_of([] { reader_of(sample_file().substr(0, 20)); }),
               HasSubstr("is not a flat library"));
   try {
-    reader_of(resealed(sample_file(), 8, 4, 5));
+    reader_of(resealed(sample_file(), 8, 5, 4));
     FAIL();
   } catch (const Error& error) {
     EXPECT_THAT(error.problem(), HasSubstr("version 5"));

@@ -233,6 +233,30 @@ TEST(Compress, TheFramesOfTheSitesMayDiffer) {
   }
 }
 
+TEST(Compress, ToolThatSticksHoldsTheSkinWhereOneWithoutFrictionLetsItSlide) {
+  const PressedPlate plate;
+  const auto slides_by = [](double z) { return 0.08 * z * Vec3{0.8, -0.6, 0}; };
+  const SkinField sliding = [&](const Vec3& x, const Vec3& c, double z, const Vec3& q) {
+    return dimple(x, c, z, q + slides_by(z));
+  };
+  for (const char* friction : {"frictionless", "no-slip"}) {
+    Deformation d =
+        compress(plate.body, plate.library, {"sphere", kRadius, friction}, plate.all_vertices(),
+                 [&](std::int32_t vertex) { return fields_at(plate, vertex, sliding); }, {});
+    d.tool_shape = "disc";
+    d.tool_radius = 1e-4;  // moves no vertex
+    const bool slips = d.press_slips;
+    EXPECT_EQ(slips, std::string(friction) == "frictionless");
+    const runtime::SkinDeformation skin(d, plate.library.triangles);
+    runtime::Touch touch = touch_at(plate, 70, {1, 0, 0}, kDeepest);  // at a site
+    touch.shear = slides_by(kDeepest);
+    EXPECT_LT(worst_error(skin, touch, slips ? SkinField(dimple) : sliding), 0.01);
+    EXPECT_GT(worst_error(skin, touch, slips ? sliding : SkinField(dimple)), 0.05);
+    touch.lateral = {0.0005, 0.001, 0};
+    EXPECT_LT(worst_error(skin, touch, slips ? SkinField(dimple) : sliding), 0.01);
+  }
+}
+
 TEST(Compress, NoVertexIsInsideTheTool) {
   const PressedPlate plate;
   // Narrower than the tool: without care the skin would cut through it.
