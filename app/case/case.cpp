@@ -273,6 +273,12 @@ fem::CampaignSettings campaign_of_case() {
   return settings;
 }
 
+fitting::FitSettings fit_of_case() {
+  fitting::FitSettings settings;
+  settings.kind = ResponseKind::Coupled;
+  return settings;
+}
+
 Case parse_case(std::string_view toml, const std::string& file_name, const SizeOfBody& size) {
   return parsed(parse_toml(toml, file_name), file_name, size);
 }

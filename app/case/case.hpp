@@ -98,13 +98,15 @@ struct OutputSection {
 /// The mesher's and the campaign's settings with every length `auto` that a case may leave out.
 mesher::Settings mesh_of_case();
 fem::CampaignSettings campaign_of_case();
+/// Coupled responses.
+fitting::FitSettings fit_of_case();
 
 /// The settings of every stage of the pipeline. Each key of a case file is bound to a field of the
 /// settings that a stage takes (app/case/describe/case.hpp), whose default is the default of the
-/// key, but for lengths, which are derived (app/case/lengths.hpp), and `drag_across`. What a case
-/// leaves out of these settings is set by app/pipeline/settings.hpp: the resolved paths, the list
-/// of supports without springs, the tool that the mesher checks for, the instantaneous law of a
-/// region with its sampled fibres, threads and memory.
+/// key, but for lengths, which are derived (app/case/lengths.hpp), `drag_across` and `responses`.
+/// What a case leaves out of these settings is set by app/pipeline/settings.hpp: the resolved
+/// paths, the list of supports without springs, the tool that the mesher checks for, the
+/// instantaneous law of a region with its sampled fibres, threads and memory.
 struct Case {
   std::string name;
   std::filesystem::path records;  ///< sidecar of a measured body; as written; empty: none
@@ -115,7 +117,7 @@ struct Case {
   fem::CampaignSettings campaign =
       campaign_of_case();  ///< [tool], [indentation], [solver], [gravity]
   SamplingSection sampling;
-  fitting::FitSettings fit;
+  fitting::FitSettings fit = fit_of_case();
   DeformationSection deformation;
   CertifySection certify;
   SimulateSection simulate;

@@ -16,7 +16,7 @@ namespace palpate::fitting {
 
 /// Longest lean that is fitted, at any depth. Beyond it a press slips on most tissue, and bounds
 /// grow.
-inline constexpr double kMostFittedLean = 0.3;
+inline constexpr double kMostFittedLean = 0.4;
 /// A shorter lean is none: a force a thousandth off is not felt.
 inline constexpr double kLeastLean = 1e-3;
 

@@ -51,8 +51,8 @@ def press(library, vertex, depths, *, friction=None, speed=0.01, rate=1000.0):
     The force at depths (m, not decreasing) below a vertex, along its inward normal.
 
     The tip comes from outside at `speed` (m/s) in steps of at most 1/`rate` (s): where the library relaxes, the
-    force depends on the speed; elsewhere it does not. friction: as in Library.state; without effect on the force,
-    but needed where the library has no certificate.
+    force depends on the speed; elsewhere it does not. friction: as in Library.state. A tool with friction shears the
+    skin where the response leans; with 0 the force is the normal response alone.
 
     Raises ArgumentError where the vertex has no response or no triangle that can be touched.
     """

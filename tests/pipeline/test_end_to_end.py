@@ -395,7 +395,7 @@ class Pipeline(unittest.TestCase):
 def flat_entries(data):
     """The numbers of each entry of a flat library, read as format/schema/flat.md says."""
     magic, version, count, size = struct.unpack_from("<8sIIQ", data)
-    assert (magic, version) == (b"\x89PLP\r\n\x1a\n", 3)
+    assert (magic, version) == (b"\x89PLP\r\n\x1a\n", 4)
     assert data[size:] == b"\npalpate-sha256:%s\n" % hashlib.sha256(data[:size]).hexdigest().encode()
     entries = {}
     for i in range(count):

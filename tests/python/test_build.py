@@ -71,13 +71,15 @@ class Case(unittest.TestCase):
             path = site.normal
             self.assertTrue(np.all(np.diff(path.force_along) > 0))
             try:
-                curve = palpate.press(self.library, site.vertex, path.displacement)
+                curve = palpate.press(self.library, site.vertex, path.displacement, friction=0)
             except palpate.ArgumentError as error:  # all its triangles are at holes
                 self.assertIn("cannot be touched", str(error))
                 continue
             touched += 1
             response = self.library.response(site.vertex)
-            self.assertLess(np.abs(curve.force - path.force_along).max(), response.normal_error + 1e-6)
+            # Without friction the tool slides a little where the response leans.
+            slides = 0.002 * np.linalg.norm(response.lean) / 0.1 * path.force_along[-1]
+            self.assertLess(np.abs(curve.force - path.force_along).max(), response.normal_error + slides + 1e-6)
             # The work of the press: less than 1 % beside the energy of the solver, plus what the fit leaves.
             self.assertLess(abs(curve.energy[-1] - path.tool_work[-1]),
                             0.03 * path.tool_work[-1] + response.normal_error * path.displacement[-1])

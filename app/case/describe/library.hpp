@@ -36,7 +36,8 @@ void describe_fit(V& v, fitting::FitSettings& s) {
   describe_choice(
       v, s.kind,
       {"responses",
-       "`coupled`: the lateral response grows with depth; give several `lateral_depths`"},
+       "`coupled`: lateral response and lean grow with depth, better by several `lateral_depths`; "
+       "`decoupled`: they are the same at every depth"},
       kResponseKinds);
 }
 

@@ -24,7 +24,7 @@ TEST(Case, ReadsQuantitiesInSiAndFillsDefaults) {
   EXPECT_DOUBLE_EQ(c.campaign.indentation.lateral_depths[1], 0.0033);
   EXPECT_EQ(c.campaign.indentation.increments, fem::IndentationSettings{}.increments);
   Case without_fit = c;
-  without_fit.fit = fitting::FitSettings{};
+  without_fit.fit = fit_of_case();
   EXPECT_EQ(c, without_fit);
 }
 

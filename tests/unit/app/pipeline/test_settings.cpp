@@ -306,6 +306,7 @@ TEST(StageSettings, KeysThatACaseLeavesOutHaveTheDefaultsOfTheStages) {
   EXPECT_EQ(paths.increments, paths_default.increments);
   EXPECT_EQ(paths.lateral_increments, paths_default.lateral_increments);
   EXPECT_EQ(paths.azimuths, paths_default.azimuths);
+  EXPECT_TRUE(paths.drag_across);
   EXPECT_EQ(paths.force_tolerance, paths_default.force_tolerance);
   EXPECT_EQ(paths.refine_under_tool, paths_default.refine_under_tool);
   EXPECT_EQ(campaign.mesh_error_sites, campaign_default.mesh_error_sites);
@@ -313,7 +314,7 @@ TEST(StageSettings, KeysThatACaseLeavesOutHaveTheDefaultsOfTheStages) {
   EXPECT_EQ(fit.relative_tolerance, fit_default.relative_tolerance);
   EXPECT_TRUE(std::isnan(fit.absolute_tolerance));
   EXPECT_EQ(fit.max_knots, fit_default.max_knots);
-  EXPECT_EQ(fit.kind, fit_default.kind);
+  EXPECT_EQ(fit.kind, ResponseKind::Coupled);
   EXPECT_EQ(certify_settings(space).friction, fitting::CertifySettings{}.friction);
 }
 
