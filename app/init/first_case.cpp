@@ -130,11 +130,12 @@ std::string reason_of_depth(const FirstSizes& sizes) {
 void write_paths(Text& text, const FirstSizes& sizes) {
   text.section("[tool]");
   text.length("radius", sizes.tool_radius, "a sphere that covers more than one element");
+  text.key("friction", "\"no-slip\"", "the tool sticks, as friction lets it");
   text.section("[indentation]");
   text.length("depth", sizes.depth, reason_of_depth(sizes));
   text.length("lateral_travel", sizes.lateral_travel, "half the depth");
   text.key("lateral_depths", fmt::format("[\"{}\"]", mm(sizes.depth / 2)),
-           "one lateral path a site; more are more accurate");
+           "one lateral depth a site; more are more accurate");
   text.section("[solver]");
   if (sizes.is_refined)
     text.key("refine_under_tool", "\"contact\"",

@@ -15,9 +15,9 @@ namespace {
 constexpr double kDepth = 0.004;
 
 Body beside_a_side() {
-  return test::make_block({-0.012, -0.008, -0.005, -0.003, -0.001, 0.001, 0.003, 0.006, 0.012, 0.03},
-                          test::graded(0.03, 0.005, 0.0025, 1.5),
-                          {-0.03, -0.02, -0.012, -0.006, -0.003, 0});
+  return test::make_block(
+      {-0.012, -0.008, -0.005, -0.003, -0.001, 0.001, 0.003, 0.006, 0.012, 0.03},
+      test::graded(0.03, 0.005, 0.0025, 1.5), {-0.03, -0.02, -0.012, -0.006, -0.003, 0});
 }
 
 fem::CampaignSettings settings(const Body& body) {
