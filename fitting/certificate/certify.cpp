@@ -118,16 +118,23 @@ double change_factor(double friction) {
   return 1 + square / 2 + friction * std::sqrt(1 + square / 4);
 }
 
-/// K of (C9), 1/s.
+/// K of (C9), 1/s, with the friction at which m_mu counts the lean.
 double relaxation_rate(const Library& library, double friction) {
-  double largest = 0;
+  double largest = 0, lean = 0;
   for (const NodeResponse& response : library.responses) {
+    const auto& [x, y, z] = response.lean;
+    const double length =
+        std::hypot(static_cast<double>(x), static_cast<double>(y), static_cast<double>(z));
+    if (length > 0)
+      lean = std::max(lean, library.kind == ResponseKind::Coupled
+                                ? response.coupling.largest() * length
+                                : length);
     double rate = 0;
     for (std::size_t i = 0; i < response.relaxation.size(); ++i)
       rate += static_cast<double>(response.relaxation[i]) / library.relaxation_times[i];
     largest = std::max(largest, rate);
   }
-  return change_factor(friction) * largest;
+  return change_factor(friction * (1 + lean * lean)) * largest;
 }
 
 void add_devices(Certificate& certificate, const CertifySettings& settings) {

@@ -255,6 +255,18 @@ double triangular_norm(double a, double b, double d) {
   return std::sqrt(0.5 * (squares + root));
 }
 
+/// Bound of the norm of A^T J A for J = ((along, 0), (mixed t, T)) with |T| <= across: blocks of
+/// the product are not longer than those of the norms, and the norm of a matrix without negative
+/// entries grows with each of them.
+double leaned_norm(double lean, double along, double mixed, double across) {
+  const double sheared = mixed + lean * across;
+  const double a = along + lean * sheared, b = lean * across, c = sheared, d = across;
+  if (lean == 0) return triangular_norm(along, mixed, across);
+  const double squares = a * a + b * b + c * c + d * d, determinant = a * d - b * c;
+  const double root = std::sqrt(std::max(0.0, squares * squares - 4 * determinant * determinant));
+  return std::sqrt(0.5 * (squares + root));
+}
+
 /// sup w' h within friction: w h <= mu g there.
 double largest_shrinking(const ContactElement& element, const Range& z) {
   double growth = 0;  // w'/w
@@ -263,27 +275,34 @@ double largest_shrinking(const ContactElement& element, const Range& z) {
   return growth * element.friction * element.normal.greatest_force(z.high);
 }
 
+/// sup w h', and with it w h/rho, within friction; memories let the force be within friction at any
+/// rho.
+double lateral_within(const ContactElement& element, const Range& z) {
+  const double rho = element.friction > 0 ? coupled_limit(element, z).high : 0;
+  const double w = element.coupling->greatest_force(z.high);
+  if (!(rho < kInfinity) || element.relaxes) return w * element.lateral.max_slope();
+  return w * element.lateral.slope({0, rho}).high;
+}
+
 /// Bound of the force at fixed c over a cell of depths, within friction, while the contact shrinks:
 /// its lateral part w h changes with z and rho, the normal one with z. The norm of a matrix without
 /// negative entries grows with each of them. Within a step w stays, at any rho; memories let the
 /// force be within friction at any rho.
 double cell_stick(const ContactElement& element, const Range& z) {
-  const double rho = element.friction > 0 ? coupled_limit(element, z).high : 0;
-  const double w = element.coupling->greatest_force(z.high);
-  const double any = w * element.lateral.max_slope();
-  const double within =
-      rho < kInfinity && !element.relaxes ? w * element.lateral.slope({0, rho}).high : any;
-  const double by_depth = element.normal.slope(z).high + lean_growth(element, z);
-  return element.stretch(z) *
-         std::max(any, triangular_norm(by_depth, largest_shrinking(element, z), within));
+  const double any = element.coupling->greatest_force(z.high) * element.lateral.max_slope();
+  const double lean = element.most_lean(z), g_z = element.normal.slope(z).high;
+  const double fixed = lean > 0 ? leaned_norm(lean, g_z, 0, any) : any;
+  return std::max(fixed, leaned_norm(lean, g_z + lean_growth(element, z),
+                                     largest_shrinking(element, z), lateral_within(element, z)));
 }
 
 /// Bound of a cell of depths of coupled responses at a fixed contact point, with slip over that
 /// point included.
 double cell_min_bound(const ContactElement& element, const Range& z) {
-  const double g_z = element.normal.slope(z).high;
-  const double slipping = std::hypot(g_z + lean_growth(element, z), element.friction * g_z);
-  return std::max(cell_stick(element, z), element.stretch(z) * slipping);
+  const double g_z = element.normal.slope(z).high, lean = element.most_lean(z);
+  const double by_depth = g_z + lean_growth(element, z), mixed = element.friction * g_z;
+  const double across = lean > 0 ? lateral_within(element, z) : 0;
+  return std::max(cell_stick(element, z), leaned_norm(lean, by_depth, mixed, across));
 }
 
 /// Below every knot the normal responses are linear. If w is constant there, nothing else depends
@@ -292,8 +311,9 @@ double min_bound_beyond(const ContactElement& element, double depth) {
   const Range beyond{depth, 2 * depth};
   if (element.coupling->slope(beyond).high > 0) return kInfinity;
   const double lateral = element.coupling->greatest_force(depth) * element.lateral.max_slope();
-  return kRoundingFactor * element.stretch(beyond) *
-         std::max(std::hypot(1.0, element.friction) * element.normal.slope(beyond).high, lateral);
+  const double g_z = element.normal.slope(beyond).high, lean = element.most_lean(beyond);
+  if (lean > 0) return kRoundingFactor * leaned_norm(lean, g_z, element.friction * g_z, lateral);
+  return kRoundingFactor * std::max(std::hypot(1.0, element.friction) * g_z, lateral);
 }
 
 using CellBound = double (*)(const ContactElement&, const Range&);
@@ -357,27 +377,44 @@ bool energy_falls_in(const ContactElement& element, const Range& z, int halvings
          energy_falls_in(element, {half, z.high}, halvings_left - 1);
 }
 
+/// Bound of |A^T M A| at the largest slopes M and the largest lean at any depth, which the proof of
+/// (C10) needs where responses that relax lean; else 0.
+double memory_bound(const ContactElement& element) {
+  if (!element.relaxes || !element.leans()) return 0;
+  double deepest = std::max(element.depth, element.normal.last_knot()), w = 1;
+  if (element.coupling) {
+    deepest = std::max(deepest, element.coupling->last_knot());
+    w = element.coupling->greatest_force(deepest);
+  }
+  return kRoundingFactor * leaned_norm(element.most_lean({0, deepest}), element.normal.max_slope(),
+                                       0, w * element.lateral.max_slope());
+}
+
 }  // namespace
 
 double stick_bound(const ContactElement& element) {
   // The Jacobian at a fixed contact point is g' n n^T + h' t t^T + (h/rho) s s^T, its norm is
   // the largest of the three; h/rho <= max h', and interpolated slopes do not exceed those at the
   // vertices.
-  if (element.coupling) return over_depths(element, element.depth, cell_stick);
-  return element.stretch({}) * std::max(element.normal.max_slope(), element.lateral.max_slope());
+  if (element.coupling)
+    return std::max(over_depths(element, element.depth, cell_stick), memory_bound(element));
+  const double lean = element.most_lean({}), g_z = element.normal.max_slope(),
+               across = element.lateral.max_slope();
+  return lean > 0 ? kRoundingFactor * leaned_norm(lean, g_z, 0, across) : std::max(g_z, across);
 }
 
 double min_lipschitz_bound(const ContactElement& element) {
   // Decoupled, |M_0| is sqrt(1 + mu^2) g' across s; along s it is h/rho <= max h'.
   if (!element.coupling) {
-    const double oblique =
-        element.friction > 0 ? kRoundingFactor * std::hypot(1.0, element.friction) : 1.0;
+    const double lean = element.most_lean({}), g_z = element.normal.max_slope();
+    const double across = lean > 0 ? element.lateral.max_slope() : 0;
+    const double slipping = leaned_norm(lean, g_z, element.friction * g_z, across);
     return std::max(stick_bound(element),
-                    element.stretch({}) * oblique * element.normal.max_slope());
+                    element.friction > 0 ? kRoundingFactor * slipping : slipping);
   }
   const double deepest = std::max(element.normal.last_knot(), element.coupling->last_knot());
-  return std::max(over_depths(element, deepest, cell_min_bound),
-                  min_bound_beyond(element, deepest));
+  return std::max({over_depths(element, deepest, cell_min_bound),
+                   min_bound_beyond(element, deepest), memory_bound(element)});
 }
 
 SlideBound slide_bound(const ContactElement& with_memory) {

@@ -369,8 +369,11 @@ SlideJacobian::Terms SlideJacobian::terms(const SlideCell& cell, const Range& rh
   x.s = x.f.s_tau + cell.reach * x.f.kappa_s;
   if (leans_) add_lean(cell, grip, x);
   x.rate = x.p - x.m * x.q - x.limit_rate;
-  x.norm_M0 =
-      std::max(std::hypot(x.n_z.magnitude(), x.mu_g_z.magnitude()), x.r.h_over_rho.magnitude());
+  const Range zero{};
+  const Entries fixed{{{x.n_z, zero, zero}, {x.mu_g_z, zero, zero}, {zero, zero, x.r.h_over_rho}}};
+  x.norm_M0 = leans_ ? leaned_norm(x.f, fixed)
+                     : std::max(std::hypot(x.n_z.magnitude(), x.mu_g_z.magnitude()),
+                                x.r.h_over_rho.magnitude());
   return x;
 }
 
@@ -398,16 +401,24 @@ void SlideJacobian::add_lean(const Terms& x, Range& v_n, Range& v_t, Range& v_s)
   v_s = v_s - leaning * x.f.kappa_s;
 }
 
+/// A = I - sigma n^T: its first column is (1, -sigma_t, -sigma_s).
+double SlideJacobian::leaned_norm(const Facet& f, const Entries& x) const {
+  if (!leans_) return norm_bound(x);
+  Entries y = x;
+  for (auto& row : y) row[0] = row[0] - f.lean_t * row[1] - f.lean_s * row[2];
+  for (std::size_t j = 0; j < 3; ++j) y[0][j] = y[0][j] - f.lean_t * y[1][j] - f.lean_s * y[2][j];
+  return norm_bound(y);
+}
+
 double SlideJacobian::bound(const SlideCell& cell) const {
   const Range rho = slip_limit(cell);
   if (rho.low == kInfinity) return 0;
   if (rho.high == kInfinity) return kInfinity;
   double bound = bound_of_response(cell, rho, Grip::Renewed);
   if (element_->coupling) bound = std::max(bound, bound_of_response(cell, rho, Grip::Kept));
-  return element_->stretch(cell.z) * bound;
+  return bound;
 }
 
-/// The bound of A^-T df/dx' A^-1.
 double SlideJacobian::bound_of_response(const SlideCell& cell, const Range& rho, Grip grip) const {
   const Terms x = terms(cell, rho, grip);
   if (!(x.r.w_h_r.low > 0)) return kInfinity;
@@ -420,16 +431,17 @@ double SlideJacobian::bound_of_response(const SlideCell& cell, const Range& rho,
   if (!(x.rate.low > 0)) return kInfinity;
   const Range w_t = Range{1, 1} / x.rate, w_n = (-1) * x.m / x.rate;
   const Range zero{};
-  double norm = std::max(x.norm_M0, norm_bound({{{x.n_z + v_n * w_n, v_n * w_t, zero},
-                                                 {x.mu_g_z + v_t * w_n, v_t * w_t, zero},
-                                                 {v_s * w_n, v_s * w_t, x.r.h_over_rho}}}));
+  double norm = std::max(x.norm_M0, leaned_norm(x.f, {{{x.n_z + v_n * w_n, v_n * w_t, zero},
+                                                       {x.mu_g_z + v_t * w_n, v_t * w_t, zero},
+                                                       {v_s * w_n, v_s * w_t, x.r.h_over_rho}}}));
   if (x.rate.high <= 1) return kRoundingFactor * norm;
   // The runtime moves c by rho - rho_s, which is more than needed: (9a).
   const Range over{std::max(0.0, x.rate.low - 1), x.rate.high - 1};
   const Range u_t = v_t - over * x.r.w_h_r;
-  return kRoundingFactor * std::max(norm, norm_bound({{{x.n_z - v_n * x.m, v_n, zero},
-                                                       {x.mu_g_z - u_t * x.m, u_t, zero},
-                                                       {(-1) * v_s * x.m, v_s, x.r.h_over_rho}}}));
+  return kRoundingFactor *
+         std::max(norm, leaned_norm(x.f, {{{x.n_z - v_n * x.m, v_n, zero},
+                                           {x.mu_g_z - u_t * x.m, u_t, zero},
+                                           {(-1) * v_s * x.m, v_s, x.r.h_over_rho}}}));
 }
 
 SlideCauses SlideJacobian::causes(const SlideCell& state) const {
@@ -445,7 +457,7 @@ SlideCauses SlideJacobian::causes(const SlideCell& state) const {
   };
   const Range turned = rho * x.f.kappa_t;
   SlideCauses causes{
-      stretch * x.norm_M0, length(x.g_tau, x.mu_g_tau, {}),
+      x.norm_M0, length(x.g_tau, x.mu_g_tau, {}),
       length(x.r.g_z * x.f.n_tau, x.mu_g_z * x.f.n_tau, x.r.h_over_rho * x.f.s_tau),
       length(x.r.g_z * turned - x.mu_g * x.f.kappa_t, x.mu_g_z * turned + x.r.g_here * x.f.kappa_t,
              (x.r.g_here - x.r.h_over_rho * state.reach) * x.f.kappa_s)};

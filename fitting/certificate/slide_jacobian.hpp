@@ -75,6 +75,9 @@ class SlideJacobian {
   Range slip_limit(const SlideCell& cell) const;
   AtVertex at_vertex(std::size_t vertex, const Range& z, const Range& rho) const;
   Response response(const SlideCell& cell, const Range& rho) const;
+  using Entries = std::array<std::array<Range, 3>, 3>;
+  /// Bound of the norm of A^T X A for X in the frame (n, t, s).
+  double leaned_norm(const Facet& facet, const Entries& x) const;
   Terms terms(const SlideCell& cell, const Range& rho, Grip grip) const;
   double bound_of_response(const SlideCell& cell, const Range& rho, Grip grip) const;
   /// Derivative along tau of a quantity with these values at the vertices.
