@@ -267,6 +267,25 @@ double leaned_norm(double lean, double along, double mixed, double across) {
   return std::sqrt(0.5 * (squares + root));
 }
 
+/// Bound of the norm of A^T M_0 A for M_0 = along n n^T + mixed t n^T + across s s^T, whatever the
+/// angle between t and sigma: over each of its ranges the entries are at most those of the largest
+/// cosine and sine.
+double slipping_norm(double lean, double along, double mixed, double across) {
+  if (lean == 0) return std::hypot(along, mixed);
+  constexpr int kRanges = 32;
+  double largest = 0;
+  for (int i = 0; i < kRanges; ++i) {
+    const double cosine = lean * std::cos(0.5 * M_PI * i / kRanges),
+                 sine = lean * std::sin(0.5 * M_PI * (i + 1) / kRanges);
+    const double a = along + cosine * mixed + sine * sine * across, b = sine * across;
+    const double first = a * a + mixed * mixed + b * b, last = b * b + across * across;
+    const double product = a * b + b * across;
+    const double root = std::hypot(first - last, 2 * product);
+    largest = std::max(largest, 0.5 * (first + last + root));
+  }
+  return kRoundingFactor * std::sqrt(largest);
+}
+
 /// sup w' h within friction: w h <= mu g there.
 double largest_shrinking(const ContactElement& element, const Range& z) {
   double growth = 0;  // w'/w
@@ -302,7 +321,7 @@ double cell_min_bound(const ContactElement& element, const Range& z) {
   const double g_z = element.normal.slope(z).high, lean = element.most_lean(z);
   const double by_depth = g_z + lean_growth(element, z), mixed = element.friction * g_z;
   const double across = lean > 0 ? lateral_within(element, z) : 0;
-  return std::max(cell_stick(element, z), leaned_norm(lean, by_depth, mixed, across));
+  return std::max(cell_stick(element, z), slipping_norm(lean, by_depth, mixed, across));
 }
 
 /// Below every knot the normal responses are linear. If w is constant there, nothing else depends
@@ -312,7 +331,9 @@ double min_bound_beyond(const ContactElement& element, double depth) {
   if (element.coupling->slope(beyond).high > 0) return kInfinity;
   const double lateral = element.coupling->greatest_force(depth) * element.lateral.max_slope();
   const double g_z = element.normal.slope(beyond).high, lean = element.most_lean(beyond);
-  if (lean > 0) return kRoundingFactor * leaned_norm(lean, g_z, element.friction * g_z, lateral);
+  if (lean > 0)
+    return kRoundingFactor * std::max(slipping_norm(lean, g_z, element.friction * g_z, lateral),
+                                      leaned_norm(lean, g_z, 0, lateral));
   return kRoundingFactor * std::max(std::hypot(1.0, element.friction) * g_z, lateral);
 }
 
@@ -408,7 +429,7 @@ double min_lipschitz_bound(const ContactElement& element) {
   if (!element.coupling) {
     const double lean = element.most_lean({}), g_z = element.normal.max_slope();
     const double across = lean > 0 ? element.lateral.max_slope() : 0;
-    const double slipping = leaned_norm(lean, g_z, element.friction * g_z, across);
+    const double slipping = slipping_norm(lean, g_z, element.friction * g_z, across);
     return std::max(stick_bound(element),
                     element.friction > 0 ? kRoundingFactor * slipping : slipping);
   }
