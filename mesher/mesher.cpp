@@ -2,6 +2,7 @@
 #include "mesher/mesher.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "format/to_index.hpp"
@@ -12,15 +13,20 @@
 #include "mesher/read/image/image_field.hpp"
 #include "mesher/read/mesh/read_volume_mesh.hpp"
 #include "mesher/read/read_surface.hpp"
+#include "mesher/repair/change.hpp"
 #include "mesher/response/cavities.hpp"
 #include "mesher/response/response.hpp"
 #include "mesher/skin/curved_skin.hpp"
+#include "mesher/skin/smooth.hpp"
 #include "mesher/support/supports.hpp"
 #include "mesher/volume/delaunay.hpp"
 #include "mesher/volume/discretization.hpp"
 
 namespace palpate::mesher {
 namespace {
+
+/// Largest edge of a smooth surface over element_size: its facets bend less than elements do.
+constexpr double kSmoothFacets = 0.5;
 
 void note_patches(const Settings& settings, const NestedSurface& skin) {
   note(settings.log, text("response surface: ", skin.response.points.size(), " vertices, ",
@@ -35,6 +41,20 @@ void curve_skin(Body& body, const NestedSurface& skin, const Settings& settings)
     note(settings.log, text(counted(reduced, "edge"), " of ", skin.curved.size(),
                             " bulge less than the skin: an element under them would be inverted"));
   }
+}
+
+/// The surface of the file, smooth where the settings say so.
+Surface outer_surface(const Settings& settings) {
+  Surface facets = read_surface(settings.surface, settings.log, settings.on_repair);
+  if (!settings.surface.smooth) return facets;
+  const std::string where = settings.surface.path.string();
+  const SmoothSettings smoothing{settings.feature_angle, settings.patch_spacing,
+                                 kSmoothFacets * settings.element_size};
+  Surface surface = smooth(facets, smoothing, where);
+  const Change change = change_between(surface, facets, std::numeric_limits<double>::infinity());
+  note(settings.log, text("smooth surface: up to ", millimetres(change.distance),
+                          " from the facets of the file, at ", position_text(change.at)));
+  return surface;
 }
 
 std::vector<Surface> read_inclusions(const Settings& settings) {
@@ -133,7 +153,7 @@ Body mesh(const Settings& settings) {
   check_settings(settings);
   if (!settings.volume_mesh.path.empty()) return body_of_volume_mesh(settings);
   if (!settings.image.path.empty()) return body_of_image(settings);
-  const Surface skin = read_surface(settings.surface, settings.log, settings.on_repair);
+  const Surface skin = outer_surface(settings);
   const std::vector<Surface> inclusions = read_inclusions(settings);
   check_sizes(settings, skin);
   return body_of(discretize(settings, skin, inclusions), settings, {skin});

@@ -29,6 +29,7 @@ struct SurfaceFile {
   std::string region_name;  ///< material region of its interior
   RepairSettings repair{};
   bool is_void = false;  ///< an inclusion that is empty: a vessel or a cavity
+  bool smooth = false;   ///< of the outer surface: the facets stand for a smooth surface, `smooth`
 };
 
 /// A layer below the skin of the body, or below the layer before it.

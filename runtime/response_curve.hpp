@@ -51,6 +51,9 @@ class CompiledCurve {
   double force(double d) const noexcept { return evaluate(d).force; }
   double slope(double d) const noexcept { return evaluate(d).slope; }
   double energy(double d) const noexcept { return evaluate(d).energy; }
+  /// w(z) of a curve that starts at another value than 0, which it has at z <= 0 as well: a contact
+  /// that only touches already holds. @pre not the zero response
+  double weight(double z) const noexcept { return z > 0 ? force(z) : pieces_.front().force; }
 
   double slope_at_rest() const noexcept { return pieces_.empty() ? 0.0 : pieces_.front().slope; }
   /// Largest slope over all d, exactly: the slope is piecewise linear. N/m

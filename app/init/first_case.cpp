@@ -7,6 +7,7 @@
 
 #include "app/case/toml_string.hpp"
 #include "app/console.hpp"
+#include "app/init/facet_width.hpp"
 #include "format/number_text.hpp"
 
 namespace palpate::app {
@@ -43,7 +44,15 @@ class Text {
   std::string text_;
 };
 
-void write_source(Text& text, const BodyFile& body, const std::string& file) {
+/// The width of the facets of the surface of a file, m, where a tool feels them: patches are not
+/// much larger. 0 elsewhere.
+double felt_facets(const BodyFile& body, const FirstSizes& sizes) {
+  const double width = body.kind == BodyKind::Surface ? facet_width(body.surface) : 0;
+  return width > 0.5 * sizes.patch_spacing ? width : 0;
+}
+
+void write_source(Text& text, const BodyFile& body, const FirstSizes& sizes,
+                  const std::string& file) {
   const bool states_unit = body.kind == BodyKind::Image && body.unit_source == UnitSource::Stated;
   const std::string unit(states_unit ? "header" : body.unit.symbol);
   text.section(body.kind == BodyKind::Surface ? "[surface]"
@@ -53,6 +62,8 @@ void write_source(Text& text, const BodyFile& body, const std::string& file) {
   text.key("unit", toml_string(unit), unit_reason(body, raw_size(body)));
   if (body.has_parts)
     text.key("parts", "\"largest\"", "the file has several; the others are left out");
+  if (felt_facets(body, sizes) > 0)
+    text.key("# smooth", "true", "takes the facets of the file for a smooth surface");
   for (const std::int32_t label : body.labels) {
     text.section("[[image_label]]");
     text.key("value", std::to_string(label), "remove the labels that are no part of the body");
@@ -156,7 +167,8 @@ std::vector<std::string> regions_of(const BodyFile& body) {
   return regions;
 }
 
-std::vector<std::string> remarks_of(const BodyFile& body, const Base& base) {
+std::vector<std::string> remarks_of(const BodyFile& body, const Base& base,
+                                    const FirstSizes& sizes) {
   std::vector<std::string> remarks;
   remarks.push_back(fmt::format(
       "unit: {}, {}{}", body.unit.symbol, unit_reason(body, raw_size(body)),
@@ -168,6 +180,11 @@ std::vector<std::string> remarks_of(const BodyFile& body, const Base& base) {
   if (body.was_repaired)
     remarks.push_back("the surface has faults that can be repaired: `palpate check` lists them");
   if (body.has_parts) remarks.emplace_back("the surface has several parts: the largest is taken");
+  if (const double width = felt_facets(body, sizes); width > 0)
+    remarks.push_back(fmt::format(
+        "facets: the edges of the file are {} mm long, which the tool feels; if the body is smooth "
+        "there, set smooth = true in [surface]",
+        number_text(1e3 * width)));
   return remarks;
 }
 
@@ -193,12 +210,12 @@ FirstCase first_case(const BodyFile& body, const Base& base, const FirstSizes& s
     text.line(fmt::format("# Its campaign takes about {}, as trial sites on this machine tell.",
                           duration_text(*sizes.seconds)));
   if (!name.empty()) text.key("name", toml_string(name), "of the folder of its artifacts");
-  write_source(text, body, file);
+  write_source(text, body, sizes, file);
   write_mesh(text, body, sizes);
   write_support(text, base, body.surface);
   for (const std::string& region : regions_of(body)) write_material(text, region);
   write_paths(text, sizes);
-  return {text.take(), remarks_of(body, base)};
+  return {text.take(), remarks_of(body, base, sizes)};
 }
 
 }  // namespace palpate::app

@@ -63,7 +63,21 @@ void stop_early(SiteCurves& curves, const std::string& reason) {
   curves.reason += (curves.reason.empty() ? "" : "; ") + reason;
 }
 
+CurveSample sample_at_rest(const CampaignContext& context) {
+  CurveSample sample;
+  sample.contact_energy = sample.tension = sample.volume_change = 0;
+  sample.min_jacobian = context.at_rest.min_J;
+  if (!context.relaxation.empty())
+    sample.isochoric_energy.assign(context.relaxation.fractions.size(), 0.0);
+  return sample;
+}
+
 }  // namespace
+
+/// An increment of a normal path, by its depths.
+struct SiteSolver::Increment {
+  double from, to;  ///< m
+};
 
 struct SiteSolver::Site {
   Site(const CampaignContext& context, const PressPoint& point, SolvePool::Member* member)
@@ -100,6 +114,20 @@ struct SiteSolver::Site {
   std::map<double, LateralStart> lateral_starts;  ///< by depth
 };
 
+bool SiteSolver::press_to(Site& site, PathDriver& driver, const Increment& increment,
+                          Predictor& states, Displacement& u, CurveSample& sample,
+                          std::string& reason) {
+  const IncrementStart start{u, site.tool_at(increment.from).tip};
+  if (!driver.advance(increment.from, increment.to, states, u, sample, reason)) return false;
+  if (context_.indentation.friction != ToolFriction::NoSlip) return true;
+  const ToolContact before = site.contact;
+  if (bond_observer_) bond_observer_(before, u, start);
+  if (!site.contact.bond_since(start, u)) return true;
+  if (driver.settle(increment.to, states, u, sample, reason)) return true;
+  site.contact = before;
+  return false;
+}
+
 void SiteSolver::run_normal_path(Site& site, const std::vector<double>& stops, SiteCurves& curves) {
   const double tool_radius = context_.indentation.tool.radius;
   const bool no_slip = context_.indentation.friction == ToolFriction::NoSlip;
@@ -117,12 +145,7 @@ void SiteSolver::run_normal_path(Site& site, const std::vector<double>& stops, S
   CurvePath path;
   path.kind = PathKind::Normal;
   path.direction = to_vec3(site.inward);
-  path.samples.emplace_back();
-  path.samples.back().contact_energy = path.samples.back().tension = 0;
-  path.samples.back().volume_change = 0;
-  path.samples.back().min_jacobian = context_.at_rest.min_J;
-  if (!context_.relaxation.empty())
-    path.samples.back().isochoric_energy.assign(context_.relaxation.fractions.size(), 0.0);
+  path.samples.push_back(sample_at_rest(context_));
 
   Displacement u = site.body.rest();
   Predictor states;
@@ -136,14 +159,13 @@ void SiteSolver::run_normal_path(Site& site, const std::vector<double>& stops, S
   for (const double depth : normal_increments(context_.indentation, stops)) {
     CurveSample sample;
     std::string reason;
-    const bool found = driver.advance(from, depth, states, u, sample, reason);
+    const bool found = press_to(site, driver, {from, depth}, states, u, sample, reason);
     if (!found) stop_early(curves, "normal path " + reason);
     if (!found && !(driver.reached() > from)) break;
     path.samples.push_back(sample);
     work.push_back(driver.work());
     if (observer_) observer_(site.contact, u, sample);
     increment_done();
-    if (no_slip) site.contact.bond(u);
     from = driver.reached();
     for (const double stop : stops)
       if (same_depth(stop, from))

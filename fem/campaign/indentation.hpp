@@ -12,6 +12,9 @@
 
 namespace palpate::fem {
 
+class PathDriver;
+class Predictor;
+
 /// A lateral path: the tool moves along a tangent at a constant depth, without slip.
 struct LateralPlan {
   double lateral_depth = 0;     ///< m
@@ -37,10 +40,16 @@ class SiteSolver {
   SiteCurves solve(std::int32_t vertex);
   SiteCurves solve(std::int32_t vertex, const SitePlan& plan);
 
-  /// Called with every equilibrium of the normal path, before the surface is bonded to the tool.
-  /// With refined elements the displacement has their nodes too.
+  /// Called with every equilibrium of the normal path, after what it touches is bonded to a tool
+  /// without slip. With refined elements the displacement has their nodes too.
   using Observer = std::function<void(const ToolContact&, const Displacement&, const CurveSample&)>;
   void observe(Observer observer) { observer_ = std::move(observer); }
+
+  /// Called with every equilibrium of a no-slip normal path before what has touched since the start
+  /// of the increment is bonded to the tool.
+  using BondObserver =
+      std::function<void(const ToolContact&, const Displacement&, const IncrementStart&)>;
+  void observe_bonds(BondObserver observer) { bond_observer_ = std::move(observer); }
 
   /// Called with every equilibrium of the lateral paths but their starts.
   using LateralObserver = std::function<void(const LateralPlan&, const ToolContact&,
@@ -61,9 +70,14 @@ class SiteSolver {
 
  private:
   struct Site;  ///< geometry and solvers of one site
+  struct Increment;
 
   SitePlan plan_of_settings(const Vec3& inward) const;
   static std::vector<LateralPlan> within_reach(const SitePlan& plan, const Site& site);
+  /// Follows an increment of the normal path as PathDriver::advance does, and bonds what it touches
+  /// to a tool without slip.
+  bool press_to(Site& site, PathDriver& driver, const Increment& increment, Predictor& states,
+                Displacement& u, CurveSample& sample, std::string& reason);
   void run_normal_path(Site& site, const std::vector<double>& stops, SiteCurves& curves);
   void run_lateral_path(Site& site, const LateralPlan& plan, SiteCurves& curves);
   void run_across(Site& site, const LateralPlan& plan, const SiteCurves& curves);
@@ -75,6 +89,7 @@ class SiteSolver {
   SolvePool::Member* member_;
   Displacement pressed_;
   Observer observer_;
+  BondObserver bond_observer_;
   LateralObserver lateral_observer_;
   bool also_across_ = false;
   IncrementObserver on_increment_;

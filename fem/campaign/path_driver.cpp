@@ -72,6 +72,21 @@ bool PathDriver::advance(double from, double to, Predictor& states, Displacement
   return true;
 }
 
+bool PathDriver::settle(double s, Predictor& states, Displacement& u, CurveSample& sample,
+                        std::string& reason) {
+  Displacement trial = u;
+  CurveSample here;
+  here.iterations = sample.iterations;
+  if (equilibrate(s, 0, trial, here, reason) != Outcome::Found) {
+    reason = "at " + length_text(s) + ": " + reason;
+    return false;
+  }
+  u = trial;
+  sample = here;
+  states.replace_last(u);
+  return true;
+}
+
 void PathDriver::add_work(double from, const Displacement& before, const Displacement& after) {
   if (!work_) return;
   const PartTimer timer(Part::Contact);

@@ -43,6 +43,11 @@ class PathDriver {
   bool advance(double from, double to, Predictor& states, Displacement& u, CurveSample& sample,
                std::string& reason);
 
+  /// From an equilibrium at `s`, which bonding has changed, to the one there is now: u, `sample`
+  /// and the last of `states`. False: `reason` says why, and they are as before.
+  bool settle(double s, Predictor& states, Displacement& u, CurveSample& sample,
+              std::string& reason);
+
   /// m, end of the last advance().
   double reached() const { return reached_; }
   /// J, of the tool in the last advance(); nothing where it could not be integrated.

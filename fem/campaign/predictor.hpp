@@ -13,6 +13,8 @@ class Predictor {
  public:
   /// The equilibrium `u` at travel `s`, larger than all before.
   void add(double s, const Displacement& u);
+  /// Another equilibrium at the travel of the last one.
+  void replace_last(const Displacement& u) { states_.back().u = u; }
 
   /// Polynomial extrapolation to `s` through as many states as keep det F above 0.3 everywhere; the
   /// last state where none does.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <mutex>
+#include <optional>
 
 #include "fem/campaign/indentation.hpp"
 #include "fem/campaign/parallel_sites.hpp"
@@ -106,10 +107,12 @@ class Differentiator {
     return true;
   }
 
-  /// Records a state at which the surface is tied afterwards, in the order of the path.
-  void record(const ToolContact& contact, const Displacement& u) {
+  /// Records a state at which the surface is tied afterwards, in the order of the path; `since`:
+  /// what has touched since the state recorded before, or since first touch.
+  void record(const ToolContact& contact, const Displacement& u,
+              std::optional<IncrementStart> since = {}) {
     if (constants_.empty()) return;
-    bonded_.push_back({contact, u, residual_slopes(contact, u)});
+    bonded_.push_back({contact, u, residual_slopes(contact, u), std::move(since)});
   }
   std::size_t recorded() const { return bonded_.size(); }
 
@@ -122,10 +125,13 @@ class Differentiator {
     Displacement multiplier = Displacement::Zero(3, u.cols());
     add_step(context_.model, 1, adjoint, multiplier);
     const ToolContact* after = &contact;
+    const Eigen::VectorXd none = Eigen::VectorXd::Zero(context_.model.pattern().n);
+    Eigen::VectorXd by_start = none, m;  // by the state before, of ties made later
     for (std::size_t i = count; i-- > 0; after = &bonded_[i].contact) {
       const Bonded& bonded = bonded_[i];
-      Eigen::VectorXd by_bond = Eigen::VectorXd::Zero(context_.model.pattern().n), m;
-      after->add_bond_gradient(context_.model, bonded.contact, multiplier, direction, by_bond);
+      Eigen::VectorXd by_bond = by_start;
+      by_start = none;
+      add_bond_gradient(*after, bonded, multiplier, direction, by_bond, by_start);
       if (by_bond.isZero(0)) continue;  // nothing was tied there
       if (!solve(bonded.contact, bonded.u, by_bond, m)) return false;
       for (std::size_t c = 0; c < constants_.size(); ++c) slope[c] -= m.dot(bonded.residuals[c]);
@@ -140,7 +146,18 @@ class Differentiator {
     ToolContact contact;
     Displacement u;
     std::vector<Eigen::VectorXd> residuals;
+    std::optional<IncrementStart> since;
   };
+
+  void add_bond_gradient(const ToolContact& after, const Bonded& bonded, const Displacement& l,
+                         const Eigen::Vector3d& direction, Eigen::VectorXd& by_bond,
+                         Eigen::VectorXd& by_start) const {
+    if (bonded.since)
+      after.add_bond_gradient(context_.model, bonded.contact, *bonded.since, bonded.u, l, direction,
+                              by_bond, by_start);
+    else
+      after.add_bond_gradient(context_.model, bonded.contact, l, direction, by_bond);
+  }
 
   /// dR/dc at fixed displacement, of each constant.
   std::vector<Eigen::VectorXd> residual_slopes(const ToolContact& contact, const Displacement& u) {
@@ -197,6 +214,10 @@ class SiteDifferentiation {
     SitePlan plan{depths_, lateral_};
     for (const LateralPlan& path : lateral_) plan.stops.push_back(path.lateral_depth);
     solver_.observe([this](const auto&... state) { pressed(state...); });
+    solver_.observe_bonds(
+        [this](const ToolContact& contact, const Displacement& u, const IncrementStart& start) {
+          differentiator_.record(contact, u, start);
+        });
     solver_.observe_lateral([this](const auto&... state) { moved(state...); });
     const SiteCurves curves = solver_.solve(result_.vertex, plan);
     if (!curves.reason.empty()) result_.reason = curves.reason;

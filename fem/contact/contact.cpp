@@ -211,6 +211,61 @@ void ToolContact::bond(const Displacement& u, double closeness) {
       ties_.push_back({node, more, mesh_->X.col(node) + u.col(node) - tool_.tip});
 }
 
+std::map<int, double> ToolContact::touched_at(const IncrementStart& start,
+                                              const Displacement& u) const {
+  Tool before = tool_;
+  before.tip = start.tip;
+  std::vector<std::pair<double, const Point*>> touched;  // by their gaps at the start
+  double touched_area = 0;
+  for (const Point& point : points_) {
+    if (gap(point, position(point, u)) >= 0) continue;
+    const Eigen::Vector3d x = position(point, start.u);
+    const double distance = tool_.has_sharp_edge() ? before.beyond_end(x) : before.gap(x).distance;
+    if (distance < 0) continue;
+    touched.emplace_back(distance, &point);
+    touched_area += point.area;
+  }
+  std::sort(touched.begin(), touched.end());
+  struct Around {
+    double area = 0, moment = 0;
+  };
+  std::map<int, Around> around;
+  double sum = 0;
+  for (const auto& [distance, point] : touched) {
+    const double when = (sum + 0.5 * point->area) / touched_area;
+    sum += point->area;
+    const Facet& facet = facets_[to_index(point->facet)];
+    for (std::size_t a = 0; a < 6; ++a) {
+      if (point->N[a] <= 0) continue;
+      around[facet[a]].area += point->area * point->N[a];
+      around[facet[a]].moment += point->area * point->N[a] * when;
+    }
+  }
+  std::map<int, double> times;
+  for (const auto& [node, surface] : around) times[node] = surface.moment / surface.area;
+  return times;
+}
+
+Eigen::Vector3d ToolContact::motion_since(const IncrementStart& start, const Displacement& u,
+                                          int node) const {
+  return u.col(node) - start.u.col(node) - (tool_.tip - start.tip);
+}
+
+bool ToolContact::bond_since(const IncrementStart& start, const Displacement& u) {
+  const std::map<int, double> times = touched_at(start, u);
+  const std::size_t before = ties_.size();
+  bond(u);
+  for (std::size_t i = before; i < ties_.size(); ++i) {
+    Tie& tie = ties_[i];
+    const auto when = times.find(tie.node);
+    if (when == times.end()) continue;
+    const Eigen::Vector3d n = gap_derivatives(position(tie, u)).normal;
+    const Eigen::Vector3d motion = motion_since(start, u, tie.node);
+    tie.arm -= (1 - when->second) * (motion - motion.dot(n) * n);
+  }
+  return ties_.size() > before;
+}
+
 Eigen::Vector3d ToolContact::tool_force(const Displacement& u) const {
   Eigen::Vector3d force = Eigen::Vector3d::Zero();
   for (const Point& point : points_) force -= point.area * gradient_at(point, position(point, u));
@@ -243,6 +298,31 @@ void ToolContact::add_bond_gradient(const SolidModel& model, const ToolContact& 
     const Tie& tie = ties_[i];
     if (const int first = model.equation(tie.node); first >= 0)
       g.segment<3>(first) += tie.stiffness * (l.col(tie.node) + direction);
+  }
+}
+
+void ToolContact::add_bond_gradient(const SolidModel& model, const ToolContact& before,
+                                    const IncrementStart& start, const Displacement& u,
+                                    const Displacement& l, const Eigen::Vector3d& direction,
+                                    Eigen::VectorXd& g, Eigen::VectorXd& g_start) const {
+  const std::map<int, double> times = before.touched_at(start, u);
+  for (std::size_t i = before.ties_.size(); i < ties_.size(); ++i) {
+    const Tie& tie = ties_[i];
+    const int first = model.equation(tie.node);
+    if (first < 0) continue;
+    const Eigen::Vector3d pull = tie.stiffness * (l.col(tie.node) + direction);
+    const auto when = times.find(tie.node);
+    g.segment<3>(first) += pull;
+    if (when == times.end()) continue;
+    // With P = I - n n^T and dn = C dx, d(P m) = P dm - ((m . n) C + n (C m)^T) dx.
+    const Gap gap = before.gap_derivatives(position(tie, u));
+    const Eigen::Vector3d& n = gap.normal;
+    const Eigen::Vector3d motion = before.motion_since(start, u, tie.node);
+    const double rest = 1 - when->second;
+    const Eigen::Vector3d along = rest * (pull - pull.dot(n) * n);
+    g_start.segment<3>(first) += along;
+    g.segment<3>(first) -= along;
+    g.segment<3>(first) += rest * gap.curvature * (motion.dot(n) * pull + n.dot(pull) * motion);
   }
 }
 

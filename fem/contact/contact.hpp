@@ -18,6 +18,12 @@ struct ContactStiffness {
   double young;    ///< E, Pa, of the solid at the surface
 };
 
+/// An equilibrium from which an increment starts.
+struct IncrementStart {
+  Displacement u;
+  Eigen::Vector3d tip;  ///< m, of the tool
+};
+
 /// Frictionless unilateral contact; after bond() the surface in contact also follows the tool.
 ///   contact: p = max(0, -eps g), g the signed distance to the tool, n its normal at x; force p n
 ///            on the body, at quadrature points of reference area w
@@ -87,6 +93,15 @@ class ToolContact {
   /// Ties the surface in contact, or nearer than `closeness`, m, to the tool. Nodes with ties get
   /// further ones where their fraction in contact has grown.
   void bond(const Displacement& u, double closeness = 0);
+  /// The same at the end of an increment of a press: what has touched within it has stuck since,
+  /// so that a tie is slack not at the present position x, but where its node touched. Points touch
+  /// in the order of their gaps at the start, and the area in contact grows in proportion to the
+  /// travel, as that of a sphere does [Hertz 1882]. Along the tool, across its normal n, nothing
+  /// has held a node: of its motion m relative to the tool it has made 1 - theta since it touched
+  /// at the fraction theta of the increment:
+  ///   arm = x - tip - (1 - theta) (I - n n^T) m,   m = (x - tip) - (x - tip at the start).
+  /// @return whether there are new ties: what they pull at is not in equilibrium yet
+  bool bond_since(const IncrementStart& start, const Displacement& u);
 
   Eigen::Vector3d tool_force(const Displacement& u) const;  ///< of the tool ON the body, N
   /// Adds d(tool_force . direction)/du to the unknowns of `model`.
@@ -97,6 +112,12 @@ class ToolContact {
   /// displacement at which the ties were made, on the unknowns of `model`. `l`: of all nodes.
   void add_bond_gradient(const SolidModel& model, const ToolContact& before, const Displacement& l,
                          const Eigen::Vector3d& direction, Eigen::VectorXd& g) const;
+  /// The same for ties of bond_since(start, u) of `before`. Their arms depend on u and on start.u:
+  /// the derivatives by both are added to `g` and `g_start`.
+  void add_bond_gradient(const SolidModel& model, const ToolContact& before,
+                         const IncrementStart& start, const Displacement& u, const Displacement& l,
+                         const Eigen::Vector3d& direction, Eigen::VectorXd& g,
+                         Eigen::VectorXd& g_start) const;
   double contact_area(const Displacement& u) const;  ///< m^2, reference
   /// How many facets are in contact, each by the fraction of it that is.
   double facets_in_contact(const Displacement& u) const;
@@ -115,6 +136,11 @@ class ToolContact {
   Gap gap_derivatives(const Eigen::Vector3d& x) const;
   /// The stiffness of a tie to each node in contact, or nearer than `closeness`.
   std::map<int, double> tie_stiffnesses(const Displacement& u, double closeness) const;
+  /// Motion of a node relative to the tool since the start, m.
+  Eigen::Vector3d motion_since(const IncrementStart& start, const Displacement& u, int node) const;
+  /// When the area around each node came into contact in an increment, in the mean over that which
+  /// did: 0 at its start, 1 at its end. Nodes around which none did are left out.
+  std::map<int, double> touched_at(const IncrementStart& start, const Displacement& u) const;
   /// N, force of the tool on each facet along its normal, compression positive.
   std::vector<double> facet_forces(const Displacement& u) const;
 

@@ -181,9 +181,15 @@ class Press {
     options.tolerance = force_tolerance_;
     options.reuse_factor = true;
     options.round_off = std::max(context_.round_off, kRoundOff * force_tolerance_ * peak_);
-    const NewtonResult result = solver_.solve(state.contact, options, state.u);
-    reason = result.reason;
-    if (!result.converged) return std::nullopt;
+    const auto settle = [&] {
+      const NewtonResult result = solver_.solve(state.contact, options, state.u);
+      reason = result.reason;
+      return result.converged;
+    };
+    if (!settle()) return std::nullopt;
+    if (no_slip_ && state.contact.bond_since({from.u, from.contact.tool().tip}, state.u) &&
+        !settle())
+      return std::nullopt;
     state.branches.advance(h, context_.model.isochoric_stress(state.u));
     state.sample = {end.time_s,
                     end.travel,
@@ -192,7 +198,6 @@ class Press {
                     state.contact.contact_area(state.u),
                     state.contact.penetration(state.u),
                     0};
-    if (no_slip_) state.contact.bond(state.u);
     return state;
   }
 

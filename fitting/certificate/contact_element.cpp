@@ -60,8 +60,7 @@ double ContactElement::most_lean(const Range& z) const {
   double largest = 0;
   for (std::size_t l = 0; l < 3; ++l) {
     const double length = norm(lean[l]);
-    largest =
-        std::max(largest, coupling ? coupling_at(coupling->curves()[l], z.high) * length : length);
+    largest = std::max(largest, coupling ? coupling->curves()[l].weight(z.high) * length : length);
   }
   return largest > 0 ? kRoundingFactor * largest : 0;
 }
@@ -75,7 +74,7 @@ double ContactElement::most_lean_change(const Range& z) const {
   for (unsigned corner = 0; corner < 8; ++corner) {
     std::array<Vec3, 3> at = lean;
     for (std::size_t l = 0; coupling && l < 3; ++l) {
-      const Range w = coupling_at(coupling->curves()[l], z);
+      const Range w = weight_range(coupling->curves()[l], z);
       at[l] = (((corner >> l) & 1u) != 0 ? w.high : w.low) * at[l];
     }
     const Vec3 first = at[1] - at[0], second = at[2] - at[0];

@@ -49,12 +49,9 @@ bool has_responses(const Library& library, const Triangle& triangle);
 ContactElement contact_element(const Library& library, std::size_t triangle, double depth,
                                double friction);
 
-/// w(z) of a vertex, from w(0) on.
-inline double coupling_at(const runtime::CompiledCurve& w, double z) {
-  return z > 0 ? w.force(z) : w.pieces().front().force;
-}
-inline Range coupling_at(const runtime::CompiledCurve& w, const Range& z) {
-  return {coupling_at(w, z.low), coupling_at(w, z.high)};
+/// w(z) of a vertex over a cell of depths.
+inline Range weight_range(const runtime::CompiledCurve& w, const Range& z) {
+  return {w.weight(z.low), w.weight(z.high)};
 }
 
 }  // namespace palpate::fitting

@@ -108,8 +108,8 @@ LateralSlopes lateral_slopes(const ContactElement& element, const Range& z, cons
     const runtime::CompiledCurve& w = element.coupling->curves()[l];
     h_low = std::min(h_low, lateral.force(rho.low));
     h_high = std::max(h_high, lateral.force(rho.high));
-    w_low = std::min(w_low, coupling_at(w, z.low));
-    w_high = std::max(w_high, coupling_at(w, z.high));
+    w_low = std::min(w_low, w.weight(z.low));
+    w_high = std::max(w_high, w.weight(z.high));
   }
   const Range w_z = element.coupling->slope(z);
   const Range h_r = element.lateral.slope(rho);
@@ -123,8 +123,8 @@ Range coupled_limit(const ContactElement& element, const Range& z) {
   std::array<double, 3> high = limits(element, z.high);
   for (std::size_t l = 0; l < 3; ++l) {
     const runtime::CompiledCurve& w = element.coupling->curves()[l];
-    low[l] /= coupling_at(w, z.high);
-    high[l] /= coupling_at(w, z.low);
+    low[l] /= w.weight(z.high);
+    high[l] /= w.weight(z.low);
   }
   return element.lateral.inverse(low, high);
 }
@@ -153,7 +153,7 @@ std::optional<SlideState> coupled_state(const ContactElement& element, const Ran
     const runtime::CompiledCurve& normal = element.normal.curves()[l];
     const runtime::CompiledCurve& h = element.lateral.curves()[l];
     const runtime::CompiledCurve& w = element.coupling->curves()[l];
-    const Range w_l{coupling_at(w, z.low), coupling_at(w, z.high)};
+    const Range w_l{w.weight(z.low), w.weight(z.high)};
     w_high = std::max(w_high, w_l.high);
     g[l] = {normal.force(z.low), normal.force(z.high)};
     limit[l] = {w_l.low * h.force(state.rho.low) - mu * g[l].high,
@@ -290,7 +290,7 @@ double slipping_norm(double lean, double along, double mixed, double across) {
 double largest_shrinking(const ContactElement& element, const Range& z) {
   double growth = 0;  // w'/w
   for (const runtime::CompiledCurve& w : element.coupling->curves())
-    growth = std::max(growth, slope_range(w, z).high / coupling_at(w, z.low));
+    growth = std::max(growth, slope_range(w, z).high / w.weight(z.low));
   return growth * element.friction * element.normal.greatest_force(z.high);
 }
 

@@ -235,7 +235,7 @@ void SlideJacobian::add_lean(const SlideCell& cell, Facet& f) const {
     Weights w, growth;
     for (std::size_t l = 0; l < 3; ++l) {
       const runtime::CompiledCurve& coupling = element_->coupling->curves()[l];
-      w[l] = coupling_at(coupling, cell.z);
+      w[l] = weight_range(coupling, cell.z);
       growth[l] = slope_range(coupling, cell.z);
     }
     S = interpolated(cell, leans, w);
@@ -290,8 +290,8 @@ Range SlideJacobian::slip_limit(const SlideCell& cell) const {
       const runtime::CompiledCurve& g = e.normal.curves()[l];
       w_low[l] = w_high[l] = n[l];
       if (e.coupling) {
-        w_low[l] *= coupling_at(e.coupling->curves()[l], cell.z.low);
-        w_high[l] *= coupling_at(e.coupling->curves()[l], cell.z.high);
+        w_low[l] *= e.coupling->curves()[l].weight(cell.z.low);
+        w_high[l] *= e.coupling->curves()[l].weight(cell.z.high);
       }
       force_low[l] = e.friction * g.force(cell.z.low);
       force_high[l] = e.friction * g.force(cell.z.high);
@@ -317,7 +317,7 @@ SlideJacobian::AtVertex SlideJacobian::at_vertex(std::size_t vertex, const Range
   Range lateral_force = h;
   if (e.coupling) {
     const runtime::CompiledCurve& coupling = e.coupling->curves()[vertex];
-    const Range w{coupling_at(coupling, z.low), coupling_at(coupling, z.high)};
+    const Range w = weight_range(coupling, z);
     const Range w_z = slope_range(coupling, z);
     v.w_z_h = w_z * h;
     v.w_h_r = w * h_r;

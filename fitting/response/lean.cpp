@@ -92,7 +92,7 @@ double least(const Function& function, double longest) {
 /// w of a node at a depth; 1 where responses are decoupled.
 double weight_of(const runtime::CompiledCurve& coupling, double z) {
   if (coupling.pieces().empty()) return 1;
-  return z > 0 ? coupling.force(z) : coupling.pieces().front().force;
+  return coupling.weight(z);
 }
 
 runtime::CompiledCurve coupling_of(const NodeResponse& node, ResponseKind kind) {
@@ -158,7 +158,7 @@ LeaningResponse::LeaningResponse(const NodeResponse& node, ResponseKind kind)
 
 runtime::CurveValue LeaningResponse::weight(double z) const {
   if (coupling_.pieces().empty()) return {1, 0, 0};
-  if (!(z > 0)) return {coupling_.pieces().front().force, 0, 0};
+  if (!(z > 0)) return {coupling_.weight(0), 0, 0};
   return coupling_.evaluate(z);
 }
 

@@ -83,10 +83,11 @@ Dragged their_drag(const Deck& deck) {
   return {-pressed.front()[2], -end[2], dot(end, deck.lateral->direction)};
 }
 
-/// palpate ties nodes, by how much of the area around them is in contact, at the end of each
-/// increment; CalculiX holds points of facets as they are pressed, and lets them go where they are
-/// pulled. Its friction is elastic, which lowers the lateral force: from a frictionless press three
-/// times the tangential stiffness, with which it hardly converges, raises it by 7 %.
+/// palpate ties nodes, by how much of the area around them is in contact, where they touched by the
+/// end of each increment; CalculiX holds points of facets as they are pressed, and lets them go
+/// where they are pulled. Its friction is elastic, which lowers the lateral force: from a
+/// frictionless press three times the tangential stiffness, with which it hardly converges, raises
+/// it by 7 %.
 void compare_drag(const std::string& what, const Dragged& ours, const Dragged& theirs,
                   const Dragged& bound) {
   const auto row = [&](const char* force, double a, double b, double allowed) {
@@ -109,18 +110,18 @@ TEST(CalculixDrag, AgreesFromAFrictionlessPress) {
                {0.01, 0.02, 0.15});
 }
 
-/// What touches during an increment slides until its end: half of the difference from CalculiX goes
-/// with sixteen increments. (CalculiX in sixteen increments has a force that is 0.4 % smaller than
-/// in two.)
+/// Where nodes touch within an increment is estimated: a quarter of the difference from CalculiX
+/// goes with sixteen increments. (CalculiX in sixteen increments has a force that is 0.4 % smaller
+/// than in two.)
 TEST(CalculixDrag, AgreesFromANoSlipPressTheBetterTheFinerItsIncrements) {
   const Body body = pressed_block();
   const auto coarse = dragging(fem::ToolFriction::NoSlip, 2);
   const Dragged theirs = their_drag_of(body, coarse);
   compare_drag("pressed without slip in 2 increments", own_drag(body, coarse), theirs,
-               {0.06, 0.05, 0.09});
+               {0.045, 0.04, 0.07});
   compare_drag("pressed without slip in 16 increments here",
                own_drag(body, dragging(fem::ToolFriction::NoSlip, 16)), theirs,
-               {0.035, 0.03, 0.07});
+               {0.035, 0.03, 0.065});
 }
 
 constexpr auto kMovedProblem =

@@ -45,6 +45,10 @@ void describe_surface(V& v, mesher::SurfaceFile& s) {
   describe_length_unit(v, s.unit,
                        {"unit", "length unit of the coordinates in the file", kRequired});
   v.text(s.region_name, {"region", "name of the material region inside the surface"});
+  v.flag(s.smooth,
+         {"smooth",
+          "`true`: the body is bounded by a smooth surface through the points of the file, not by "
+          "its facets; edges sharper than `mesh.feature_angle` stay"});
   describe_repair(v, s.repair);
 }
 

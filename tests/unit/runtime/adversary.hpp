@@ -10,9 +10,9 @@
 #include <random>
 #include <string>
 
-#include "fitting/certificate/certify.hpp"
 #include "runtime/palpate.h"
 #include "tests/support/bodies.hpp"
+#include "tests/unit/runtime/certified_library.hpp"
 #include "tests/unit/runtime/watched_contact.hpp"
 
 namespace palpate::test {
@@ -58,11 +58,6 @@ inline Library growing_unevenly(Library library) {
     for (std::size_t k = 0; k < w.curve.slope.size(); ++k)
       w.curve.slope[k] *= static_cast<float>(w.curve.knot[k] < 0.002F ? 1 - late : 1 + late);
   }
-  return library;
-}
-
-inline Library certified(Library library, double friction) {
-  fitting::certify(library, {friction, {}});
   return library;
 }
 

@@ -58,8 +58,9 @@ std::array<Vec3, 3> turned(const std::array<Vec3, 3>& rotation, const Vec3& axis
 /// sometimes shifts: whatever the command, the force follows in bounded steps.
 class Turning {
  public:
-  static constexpr double kBound = 250;  // N/m; the walls are at most 170 (1 + mu^2)^(1/2)
-  explicit Turning(const palpate_library& body) : contact(body.surface, body.tree, settings(), 0) {}
+  Turning(const palpate_library& body, double bound)
+      : contact(body.surface, body.tree, {.friction = 0.3, .lipschitz_bound = bound}, 0),
+        bound_(bound) {}
 
   void touch(double depth) {
     contact.pose = {};
@@ -68,13 +69,13 @@ class Turning {
       contact.step(in_body_, 1e-3);
     }
   }
-  /// @return change of the force over its bound, L (path in the body + angle times arm).
+  /// @return change of the force over its bound, L (path in the body + angle times arm) (R15a).
   double step() {
     const runtime::ContactObservation was = contact.contact.observation();
     const Vec3 before = contact.command();
     const double angle = std::pow(10, between(-6, 0));
     const double size = moves_++ % 2 == 0 ? 0 : std::pow(10, between(-8, -4));
-    const Vec3 arm = in_body_ - was.contact_point - was.lateral_offset;
+    const double arm = norm(in_body_ - was.contact_point - was.lateral_offset) + force_free(was);
     const Vec3 target = in_body_ + size * unit();
     runtime::Pose& pose = contact.pose;
     const Vec3 tip = pose.to_world(in_body_);
@@ -82,17 +83,17 @@ class Turning {
     pose.position = tip - pose.turn(target);  // brings `target` to the tip, which rests
     contact.step(tip, 1e-3);
     in_body_ = target;
-    return norm(contact.command() - before) / (kBound * (size + angle * norm(arm)) + 1e-9);
+    return norm(contact.command() - before) / (bound_ * (size + angle * arm) + 1e-9);
   }
 
   runtime::PosedContact contact;
 
  private:
-  static runtime::ContactSettings settings() {
-    runtime::ContactSettings settings;
-    settings.friction = 0.3;
-    settings.lipschitz_bound = kBound;
-    return settings;
+  /// How far from the anchor, across n, the force is zero: |d0 sigma| + |e - sigma z_w/2|, m.
+  static double force_free(const runtime::ContactObservation& seen) {
+    const double half = 0.5 * seen.grip.depth, sheared = seen.deflection.depth - half;
+    const Vec3 lean = sheared > 0 ? (1 / sheared) * seen.shear : Vec3{};
+    return std::abs(seen.offset) * norm(lean) + norm(seen.grip.micro_slip - half * lean);
   }
   double between(double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(random_);
@@ -103,15 +104,16 @@ class Turning {
     return (1 / norm(v)) * v;
   }
 
+  double bound_;  // N/m
   std::mt19937 random_{11};
   Vec3 in_body_{};
   int moves_ = 0;
 };
 
-TEST(PosedContact, ARotationOfTheBodyChangesTheForceAsAMotionDoes) {
-  const palpate_library body(
-      bumpy_sphere(3, 0.03, 0.1, [](const Vec3&) { return wall_response(170, 120); }));
-  Turning tool(body);
+/// @param bound  N/m, L_min of the certificate of the body at mu = 0.3
+void expect_turns_like_motions(const Library& library, double bound) {
+  const palpate_library body(library);
+  Turning tool(body, bound);
   double largest_force = 0, largest_ratio = 0;
   for (int touch = 0; touch < 40; ++touch) {
     tool.touch(1e-3 + 1e-4 * touch);
@@ -121,7 +123,25 @@ TEST(PosedContact, ARotationOfTheBodyChangesTheForceAsAMotionDoes) {
     }
   }
   EXPECT_GT(largest_force, 0.1);
+  EXPECT_GT(largest_ratio, 0.3);
   EXPECT_LE(largest_ratio, 1);
+}
+
+TEST(PosedContact, ARotationOfTheBodyChangesTheForceAsAMotionDoes) {
+  const Library walls =
+      bumpy_sphere(3, 0.03, 0.1, [](const Vec3&) { return wall_response(170, 120); });
+  {
+    SCOPED_TRACE("walls");
+    expect_turns_like_motions(walls, 178);
+  }
+  {
+    SCOPED_TRACE("leaning");
+    expect_turns_like_motions(leaning(walls, 0.3), 205);
+  }
+  {
+    SCOPED_TRACE("leaning with the contact");
+    expect_turns_like_motions(leaning(coupled(walls), 0.3), 287);
+  }
 }
 
 }  // namespace

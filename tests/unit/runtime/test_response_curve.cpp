@@ -137,6 +137,16 @@ TEST(ResponseCurve, IsZeroOutOfContactAndNeverSteeperThanItsLargestSlope) {
   EXPECT_GE(steepest, curve.max_slope() * 0.99);
 }
 
+TEST(ResponseCurve, WeightIsThatOfATouchWithoutContact) {
+  const CompiledCurve w({{0.0F, 0.005F}, {0.0F, 60.0F}}, 0.5);
+  for (const double z : {-0.001, 0.0}) {
+    EXPECT_EQ(w.weight(z), 0.5) << z;
+    EXPECT_EQ(w.force(z), 0) << z;
+  }
+  // w' rises by 60/m over 5 mm: w = 0.5 + 6000 z^2.
+  EXPECT_NEAR(w.weight(0.003), 0.5 + 6000 * 9e-6, 1e-7);
+}
+
 TEST(ResponseCurve, RejectsWhatIsNoPassiveResponse) {
   const auto make = [](std::vector<float> knot, std::vector<float> slope) {
     ResponseCurve curve;

@@ -116,7 +116,7 @@ class SettingsText {
     for (const double value : values) add(value);
   }
   void add(const mesher::SurfaceFile& file) {
-    add(file.path.string(), file.unit, file.region_name, file.is_void);
+    add(file.path.string(), file.unit, file.region_name, file.is_void, file.smooth);
     add(static_cast<int>(file.repair.mode), file.repair.largest_part, file.repair.max_hole,
         file.repair.max_change);
   }

@@ -225,6 +225,26 @@ TEST_F(Indentation, LateralForceOpposesTheMotionAndGrows) {
   }
 }
 
+/// What touches sticks from then on, however long the increment goes on: a tool that sticks feels
+/// 4 % more than one without friction, and most of that in two increments as well.
+TEST_F(Indentation, OfAToolThatSticksBarelyDependsOnItsIncrements) {
+  const auto force = [&](int increments) {
+    CampaignSettings s = settings();
+    s.indentation.friction = increments > 0 ? ToolFriction::NoSlip : ToolFriction::Frictionless;
+    s.indentation.increments = std::max(1, increments);
+    s.indentation.azimuths.clear();
+    s.indentation.lateral_depths.clear();
+    const CampaignContext context(*body_, s, Engine::SharedFactor);
+    const SiteCurves site = solve_site(context, centre_vertex(*body_), nullptr);
+    EXPECT_EQ(site.status, SiteStatus::Complete) << site.reason;
+    return norm(site.paths.front().samples.back().force);
+  };
+  const double fine = force(32);
+  EXPECT_LT(force(0), 0.97 * fine);
+  EXPECT_NEAR(force(2), fine, 0.012 * fine);
+  EXPECT_NEAR(force(4), fine, 0.005 * fine);
+}
+
 TEST_F(Indentation, DragsAcrossItsOnlyAzimuthAtTheMiddleDepth) {
   CampaignSettings s = settings();
   s.indentation.increments = 4;

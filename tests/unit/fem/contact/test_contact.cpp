@@ -85,6 +85,43 @@ TEST(ToolContact, BondingChangesNeitherForceNorEnergy) {
   EXPECT_LT((p.contact.tool_force(p.u) - before).norm(), 1e-12 * before.norm());
 }
 
+/// A sphere that is moved into a surface while this moves along it touches the circle of radius r
+/// at (r/a)^2 of the increment, with a that of the end: a tie pulls back by what is left of the
+/// motion.
+TEST(ToolContact, BondedSinceTheStartPullsBackToWhereItTouched) {
+  const Body body = test::make_block(test::even(-0.006, 0.006, 24), test::even(-0.006, 0.006, 24),
+                                     test::even(-0.006, 0, 2));
+  const SolidModel model(body, {NeoHookean::from_young_poisson(10e3, 0.49, "t")});
+  constexpr double kRadius = 0.005, kDepth = 0.001, kAside = 2e-4;
+  ToolContact contact(model.mesh(), Eigen::Vector3d::Zero(), 0.01, {1e8, 1e4});
+  const IncrementStart start{Displacement::Zero(3, model.mesh().nodes()), Eigen::Vector3d::Zero()};
+  Displacement u = start.u;
+  u.row(0).setConstant(kAside);
+  const Eigen::Vector3d tip(kAside, 0, -kDepth);  // centred on the surface as it is at the end
+  contact.move_to({{ToolShape::Sphere, kRadius, 0, 0}, tip});
+  ToolContact slack = contact;
+  slack.bond(u);
+  contact.bond_since(start, u);
+  ASSERT_EQ(contact.ties().size(), slack.ties().size());
+  const double touched = 2 * kRadius * kDepth - kDepth * kDepth;  // a^2
+  const Eigen::Vector3d centre = tip + kRadius * Eigen::Vector3d::UnitZ();
+  double farthest = 0;
+  for (std::size_t i = 0; i < contact.ties().size(); ++i) {
+    const ToolContact::Tie& tie = contact.ties()[i];
+    EXPECT_EQ(tie.stiffness, slack.ties()[i].stiffness);
+    const Eigen::Vector3d x = contact.position(tie, u);
+    const double r2 = (x - tip).head<2>().squaredNorm();
+    if (r2 > 0.8 * touched) continue;  // around nodes at the border less than their area touches
+    const Eigen::Vector3d n = (centre - x).normalized();
+    const Eigen::Vector3d motion(0, 0, kDepth);  // relative to the tool
+    const Eigen::Vector3d expected = (1 - r2 / touched) * (motion - motion.dot(n) * n);
+    const Eigen::Vector3d pulled = slack.ties()[i].arm - tie.arm;
+    EXPECT_LT((pulled - expected).norm(), 0.05 * kDepth) << x.transpose();
+    farthest = std::max(farthest, expected.norm());
+  }
+  EXPECT_GT(farthest, 0.1 * kDepth);
+}
+
 TEST(ToolContact, ToolForceBalancesTheForcesOnTheNodes) {
   const Pressed p;
   Eigen::VectorXd f = Eigen::VectorXd::Zero(p.model.pattern().n);

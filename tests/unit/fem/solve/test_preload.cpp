@@ -132,24 +132,23 @@ TEST(Preload, NamesTheWeightUnderWhichABodyCollapses) {
   }
 }
 
-/// The shape of a limp rod that turns by a right angle is that of the elastica, whether the clamp
-/// is level or points upwards.
+/// The shape of a limp rod whose clamp points upwards is that of the elastica. (That of a level
+/// clamp is among the verification problems.)
 TEST(Preload, BendsARodLikeTheElastica) {
   constexpr double kRadius = 0.004, kLength = 0.2, kYoung = 5e5, kDensity = 1000, kGravity = 9.81;
   const double weight = kDensity * kGravity * M_PI * std::pow(kRadius, 2);
   const double bending = kYoung * M_PI / 4 * std::pow(kRadius, 4);
-  for (const double clamped : {M_PI / 2, 0.8 * M_PI}) {
-    const Body body = test::make_rod(kRadius, kLength, 24);
-    const Eigen::Vector3d down(0, -std::sin(clamped), std::cos(clamped));
-    const Displacement u =
-        displaced(body, {kYoung, 0.3}, {{0, kGravity * down[1], kGravity * down[2]}, kDensity});
-    const Eigen::Vector3d tip = Eigen::Vector3d(0, 0, kLength) + u.col(24 * 19);
-    const test::RodTip expected = test::heavy_elastica(weight, bending, kLength, clamped);
-    const Eigen::Vector3d across(0, std::cos(clamped), std::sin(clamped));
-    EXPECT_NEAR(tip.dot(down), expected.along, 0.01 * kLength) << clamped;
-    EXPECT_NEAR(tip.dot(across), expected.across, 0.01 * kLength) << clamped;
-    EXPECT_GT(expected.along, clamped < 2 ? 0.8 * kLength : 0.5 * kLength);
-  }
+  const double clamped = 0.8 * M_PI;
+  const Body body = test::make_rod(kRadius, kLength, 24);
+  const Eigen::Vector3d down(0, -std::sin(clamped), std::cos(clamped));
+  const Displacement u =
+      displaced(body, {kYoung, 0.3}, {{0, kGravity * down[1], kGravity * down[2]}, kDensity});
+  const Eigen::Vector3d tip = Eigen::Vector3d(0, 0, kLength) + u.col(24 * 19);
+  const test::RodTip expected = test::heavy_elastica(weight, bending, kLength, clamped);
+  const Eigen::Vector3d across(0, std::cos(clamped), std::sin(clamped));
+  EXPECT_NEAR(tip.dot(down), expected.along, 0.01 * kLength);
+  EXPECT_NEAR(tip.dot(across), expected.across, 0.01 * kLength);
+  EXPECT_GT(expected.along, 0.5 * kLength);
 }
 
 TEST(Preload, IsZeroWithoutGravity) {

@@ -53,11 +53,5 @@ TEST(ContactElement, DepthCellsHaveNoKnotOfNormalResponsesOrCouplingInside) {
   EXPECT_EQ(element.depth_cells(0.003).back(), 0.003);
 }
 
-TEST(ContactElement, CouplingAtZeroIsItsBase) {
-  const runtime::CompiledCurve w({{0.0F, 0.005F}, {0, 60}}, 0.5);
-  EXPECT_EQ(coupling_at(w, 0), 0.5);
-  EXPECT_EQ(coupling_at(w, 0.003), w.force(0.003));
-}
-
 }  // namespace
 }  // namespace palpate::fitting
