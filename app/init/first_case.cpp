@@ -44,11 +44,11 @@ class Text {
   std::string text_;
 };
 
-/// The width of the facets of the surface of a file, m, where a tool feels them: patches are not
-/// much larger. 0 elsewhere.
+/// The width of the facets of the surface of a file, m, where a tool feels them: half its radius or
+/// more. 0 elsewhere.
 double felt_facets(const BodyFile& body, const FirstSizes& sizes) {
   const double width = body.kind == BodyKind::Surface ? facet_width(body.surface) : 0;
-  return width > 0.5 * sizes.patch_spacing ? width : 0;
+  return width > 0.5 * sizes.tool_radius ? width : 0;
 }
 
 void write_source(Text& text, const BodyFile& body, const FirstSizes& sizes,

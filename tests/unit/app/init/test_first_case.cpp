@@ -44,11 +44,11 @@ TEST(FirstCase, HasTheGuessedUnitTheFileAndAPlaneThatTheBodyMeets) {
   EXPECT_LT(c.campaign.indentation.depth, c.campaign.indentation.tool.radius);
 }
 
-/// Edges of some 10 mm are felt between sites as far apart; those of the pad are its rims.
+/// Edges of some 10 mm are felt by a tool as large; those of the pad are its rims.
 TEST(FirstCase, NamesFacetsThatAToolFeels) {
   const FirstCase liver = made("data/bodies/sofa/liver.obj");
   EXPECT_THAT(liver.toml, testing::HasSubstr("# smooth = true"));
-  EXPECT_THAT(liver.remarks.back(), testing::HasSubstr("facets: the edges of the file are 1"));
+  EXPECT_THAT(liver.remarks.back(), testing::HasSubstr("facets: the edges of the file are 8.1"));
   EXPECT_FALSE(parse_case(liver.toml, "liver.toml").mesh.surface.smooth);
   EXPECT_THAT(made("data/bodies/pad.off").toml, testing::Not(testing::HasSubstr("smooth")));
 }
