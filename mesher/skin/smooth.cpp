@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -135,10 +136,12 @@ class Smoothing {
 
   /// @return whether an edge was halved
   bool halve_edges() {
+    mark_curved();
+    if (marked_.empty()) return false;
+    mark_longest();
     middles_.clear();
     for (std::size_t t = 0; t < surface_.triangles.size(); ++t)
       for (std::size_t i = 0; i < 3; ++i) halve(t, i);
-    if (middles_.empty()) return false;
     const std::size_t before = surface_.triangles.size();
     for (std::size_t t = 0; t < before; ++t) divide(t);
     halve_sharp();
@@ -166,16 +169,44 @@ class Smoothing {
     return normal_to(x(corners[i]), x(corners[j]), normals_[t][i], normals_[t][j]);
   }
 
+  /// Marks the long edges that are curved.
+  void mark_curved() {
+    marked_.clear();
+    for (std::size_t t = 0; t < surface_.triangles.size(); ++t) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        const Edge edge = edge_of(surface_.triangles[t], i);
+        if (!(length(edge) > longest_)) continue;
+        const Vec3 bulge = cubic(t, i).middle() - 0.5 * (x(edge[0]) + x(edge[1]));
+        if (norm(bulge) > kStraight * length(edge)) marked_.insert(edge);
+      }
+    }
+  }
+
+  /// Marks the longest edge of every triangle with a mark: triangles beside a straight edge would
+  /// otherwise become thinner and thinner [Rivara 1984].
+  void mark_longest() {
+    for (bool changed = true; changed;) {
+      changed = false;
+      for (const Triangle& t : surface_.triangles) {
+        Edge longest = edge_of(t, 0);
+        bool has_mark = false;
+        for (std::size_t i = 0; i < 3; ++i) {
+          const Edge edge = edge_of(t, i);
+          has_mark = has_mark || marked_.count(edge) > 0;
+          if (length(edge) > length(longest)) longest = edge;
+        }
+        if (has_mark && marked_.insert(longest).second) changed = true;
+      }
+    }
+  }
+
+  double length(const Edge& edge) const { return norm(x(edge[1]) - x(edge[0])); }
+
   void halve(std::size_t t, std::size_t i) {
     const Edge edge = edge_of(surface_.triangles[t], i);
-    if (middles_.count(edge) > 0) return;
-    const Vec3 &a = x(edge[0]), &b = x(edge[1]);
-    const double length = norm(b - a);
-    if (!(length > longest_)) return;
-    const Vec3 middle = cubic(t, i).middle();
-    if (!(norm(middle - 0.5 * (a + b)) > kStraight * length)) return;
+    if (marked_.count(edge) == 0 || middles_.count(edge) > 0) return;
     middles_[edge] = static_cast<std::int32_t>(surface_.points.size());
-    surface_.points.push_back(middle);
+    surface_.points.push_back(cubic(t, i).middle());
   }
 
   Corner corner(std::size_t t, std::size_t i) const {
@@ -251,6 +282,7 @@ class Smoothing {
   double longest_;
   std::map<Edge, Tangents> sharp_;
   std::vector<Normals> normals_;  // of each triangle
+  std::set<Edge> marked_;         // to be halved
   std::map<Edge, std::int32_t> middles_;
 };
 

@@ -108,6 +108,24 @@ TEST(Smooth, FlatFacetsStayAsTheyAre) {
   EXPECT_EQ(same.triangles, box.triangles);
 }
 
+/// A cylinder one half of which is stretched to a half ellipse: straight edges are halved where
+/// those beside them are curved, so that no triangle becomes a sliver and the halving ends.
+TEST(Smooth, HalvesStraightEdgesBesideCurvedOnes) {
+  Surface s = test::cylinder(0.01, 0.06, 12);
+  for (Vec3& x : s.points)
+    if (x[0] < 0) x[0] *= 5;
+  const Surface nose = smoothed(s, 0.002);
+  EXPECT_LT(nose.triangles.size(), 30000U);
+  EXPECT_EQ(count_degenerate_triangles(nose), 0);
+  double longest = 0;
+  for (const Edge& edge : edges_of(nose.triangles)) {
+    const Vec3 d = nose.points[to_index(edge[1])] - nose.points[to_index(edge[0])];
+    if (std::abs(d[2]) < 1e-6) continue;  // on the flat caps
+    longest = std::max(longest, norm(d));
+  }
+  EXPECT_LT(longest, 0.006);
+}
+
 TEST(Smooth, PartsOfAFaceHaveItsNames) {
   Surface facets = test::sphere({0, 0, 0}, kRadius, 24);
   facets.known_names = {{"south"}, {"north"}};
