@@ -97,9 +97,9 @@ class ToolContact {
   /// so that a tie is slack not at the present position x, but where its node touched. Points touch
   /// in the order of their gaps at the start, and the area in contact grows in proportion to the
   /// travel, as that of a sphere does [Hertz 1882]. Along the tool, across its normal n, nothing
-  /// has held a node: of its motion m relative to the tool it has made 1 - theta since it touched
-  /// at the fraction theta of the increment:
-  ///   arm = x - tip - (1 - theta) (I - n n^T) m,   m = (x - tip) - (x - tip at the start).
+  /// has held a node: of its motion m relative to the tool it has made 1 - beta since it touched
+  /// at the fraction beta of the increment:
+  ///   arm = x - tip - (1 - beta) (I - n n^T) m,   m = (x - tip) - (x - tip at the start).
   /// @return whether there are new ties: what they pull at is not in equilibrium yet
   bool bond_since(const IncrementStart& start, const Displacement& u);
 
