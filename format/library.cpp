@@ -23,6 +23,12 @@ bool Library::leans() const {
                      [](const NodeResponse& node) { return node.lean != std::array<float, 3>{}; });
 }
 
+bool Library::has_soft_axes() const {
+  return std::any_of(responses.begin(), responses.end(), [](const NodeResponse& node) {
+    return node.soft_axis != std::array<float, 3>{};
+  });
+}
+
 double enforced_lipschitz_bound(const Certificate& certificate) {
   const Certificate& c = certificate;
   if (c.triangles.empty()) return std::numeric_limits<double>::infinity();

@@ -71,6 +71,10 @@ struct CouplingCurve {
 /// Largest length of the lean of a node at any depth.
 inline constexpr double kMostLean = 0.5;
 
+/// Largest length of the soft axis of a node: the stiffness along it is at least a quarter of that
+/// across it.
+inline constexpr double kMostSoftAxis = 0.70710678;
+
 /// Largest number of relaxation times of a library.
 inline constexpr std::size_t kMaxRelaxationTimes = 8;
 
@@ -88,6 +92,10 @@ struct NodeResponse {
   /// press direction. The lateral force against it is the force by which a press leans. In a
   /// coupled library it is w sigma, as the lateral response is w h.
   std::array<float, 3> lean{};
+  /// b, 1, of a coupled library only: the lateral response is softer along b, where its stiffness is
+  /// (1 - |b|^2)^2 of that across b and the press direction. The sign means nothing; zero: the
+  /// response is the same in all lateral directions.
+  std::array<float, 3> soft_axis{};
   /// N, largest CurveSample::mesh_error of the curves that the normal response stands for: what the
   /// mesh of the campaign leaves, beside the error of the fit. NaN when unknown. Not in flat files.
   double normal_mesh_error = kUnknown;
@@ -162,7 +170,8 @@ inline RenderedForce rendered_force(const Certificate& certificate, double lipsc
 
 struct Library {
   bool relaxes() const { return !relaxation_times.empty(); }
-  bool leans() const;  ///< whether a node does
+  bool leans() const;          ///< whether a node does
+  bool has_soft_axes() const;  ///< whether a node has one
 
   ResponseKind kind = ResponseKind::Decoupled;
   std::string name;
