@@ -43,7 +43,7 @@ LateralSlip LocalModel::relaxed_slip_within(const Deflection& d, const LocalResp
   if (slip.lateral > 0) slip.tangent = (1 / magnitude) * instant;
   slip.scale = 1;
   slip.direction = d.lateral * d.tangent - slip.lateral * slip.tangent;
-  slip.distance = norm(slip.direction);
+  restore_direction(slip);
   return slip;
 }
 
@@ -96,7 +96,7 @@ void LocalModel::renew_grip(Deflection& d, LocalResponse& at, ToolPieces& pieces
     return;
   }
   grip_.depth = depth;
-  add_micro_slip((d.lateral - renewed.lateral) * d.tangent + (sheared - shear(d)));
+  add_micro_slip(shortened(d, renewed.lateral) + (sheared - shear(d)));
   d = renewed;
   at = response;
 }
@@ -161,7 +161,7 @@ void LocalModel::grow_grip(const Vec3& wide, Deflection& d, LocalResponse& at, T
   }
   grip_.depth = std::max(d.depth, 0.0);
   grip_.scale = 1;
-  add_micro_slip((d.lateral - renewed.lateral) * d.tangent + (sheared - shear(d)));
+  add_micro_slip(shortened(d, renewed.lateral) + (sheared - shear(d)));
   d = renewed;
   at = response;
 }
@@ -204,11 +204,30 @@ double LocalModel::energy_slope(const Deflection& at, const Vec3& d,
   turn = (1.0 / norm(surface_->direction_sum(point_))) * (turn - dot(turn, n_) * n_);
   const LocalResponse response = respond(at);
   const double depth_rate = dot(lateral_displacement(at) + lateral_offset_, turn) - dot(n_, d);
-  const double lean_rate = dot(at.tangent, lean_change - lean_along_normal * turn);
+  const Vec3 tangent = soft_axes_.stretch(at.tangent);
+  const double lean_rate = dot(tangent, lean_change - lean_along_normal * turn);
+  const double soft_rate = soft_axes_.any() ? turning_of_soft_axes(at, d, turn) : 0;
   return change_of_curves + dot(response.force, n_) * depth_rate -
-         response.lateral_force *
-             (dot(at.tangent, anchor_rate) + at.geometric * dot(at.tangent, turn) +
-              (at.depth - 0.5 * grip_.depth) * lean_rate);
+         response.lateral_force * (dot(tangent, anchor_rate) + at.geometric * dot(tangent, turn) +
+                                   (at.depth - 0.5 * grip_.depth) * lean_rate + soft_rate);
+}
+
+/// -t . (S' q), m/m: with v_l = P b_l, v_l' = -(b_l . n') n - (b_l . n) n', so that across n
+///   -S' = sum (grad n_l . d) v_l v_l^T - sum n_l (b_l . n)(n' v_l^T + v_l n'^T).
+double LocalModel::turning_of_soft_axes(const Deflection& at, const Vec3& d,
+                                        const Vec3& turn) const noexcept {
+  const Element& e = surface_->element(point_.element);
+  const Vec3 q = unstretched(at);
+  double rate = 0;
+  for (std::size_t l = 0; l < 3; ++l) {
+    const Vec3 b = surface_->soft_axis(e, l);
+    const double along = dot(b, n_);
+    const Vec3 v = b - along * n_;
+    const double of_t = dot(v, at.tangent), of_q = dot(v, q);
+    rate += dot(e.gradient[l], d) * of_t * of_q -
+            point_.natural[l] * along * (dot(turn, at.tangent) * of_q + dot(turn, q) * of_t);
+  }
+  return rate;
 }
 
 }  // namespace palpate::runtime

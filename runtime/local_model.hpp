@@ -10,6 +10,7 @@
 #include "runtime/contact_place.hpp"
 #include "runtime/interpolated_response.hpp"
 #include "runtime/kept_pieces.hpp"
+#include "runtime/soft_axes.hpp"
 #include "runtime/surface.hpp"
 #include "runtime/tissue_memory.hpp"
 
@@ -22,8 +23,8 @@ class Relaxation;
 struct Deflection {
   double depth = 0;      ///< z = geometric - d0, m
   double geometric = 0;  ///< n . (x - c), m: depth of the tip below the surface at rest
-  double lateral = 0;    ///< rho = |q| >= 0, m, q the lateral part minus s and the shear
-  Vec3 tangent{};        ///< t = q/rho, unit; zero when rho = 0
+  double lateral = 0;    ///< rho = |S q| >= 0, m, q the lateral part minus s and the shear
+  Vec3 tangent{};        ///< t = S q/rho, unit; zero when rho = 0
 };
 
 /// The pieces of the responses around the tool, from one evaluation to the next; those of responses
@@ -36,9 +37,9 @@ struct ToolPieces {
 /// Force and energy of a local model at one tip position.
 struct LocalResponse {
   double normal_force = 0;   ///< dE/dz at fixed q, N: g(z)
-  double lateral_force = 0;  ///< |dE/dq|, N; h(rho) of decoupled responses without memory
+  double lateral_force = 0;  ///< dE/drho, N; h(rho) of decoupled responses without memory
   double energy = 0;  ///< E = sum n_l (G_l(z) + H_l(rho)), J [Mahvash & Hayward 2005, eq. 32]
-  Vec3 force{};       ///< f = g n + h (t - (t . sigma) n), of the tool ON the body, N [eq. 28]
+  Vec3 force{};       ///< f = g n + h (S t - (S t . sigma) n), of the tool ON the body, N [eq. 28]
   double friction_normal_force = 0;  ///< g(z), or psi g(z), N: friction is limited to mu times it
   RelaxedResponse relaxed{};         ///< for responses that relax only
   double instant_lateral_force = 0;  ///< h(rho) or w h(rho), N, of responses that relax only
@@ -81,11 +82,13 @@ struct LateralSlip {
 /// sigma = sum n_l sigma_l is how a straight press shears the tissue: beside a support its force
 /// leans. Coupled responses: E = sum n_l (G_l(z) + w_l(z_w) H_l(rho)), sigma = sum n_l w_l(z_w)
 /// sigma_l, q = r - (n . r) n - s - e - sigma (z - z_w/2), and again f = grad E: the grip is fixed
-/// as well, and renew_grip() changes it. The Jacobian is A^T (g' n n^T + h' t t^T + (h/rho) b b^T)
-/// A with b = n x t and A = I - sigma n^T: its norm does not exceed the largest stored slope (times
-/// w) times |A|^2. Responses that relax have a memory, which is fixed as well: V of (R18) replaces
-/// G, and psi g replaces g in every equation above; H - M . q + K replaces H, and grad H - M
-/// replaces h t (R23). noexcept, allocation-free.
+/// as well, and renew_grip() changes it. Where vertices have soft axes, p = S q takes the place of
+/// q in E: rho = |p|, t = p/rho, and f = g n + h (S t - (S t . sigma) n). |S| <= 1, so that no
+/// bound gets larger, and friction limits h to mu g, so that |S t| h <= mu g. The Jacobian is A^T
+/// (g' n n^T + h' t t^T + (h/rho) b b^T) A with b = n x t and A = I - sigma n^T: its norm does not
+/// exceed the largest stored slope (times w) times |A|^2. Responses that relax have a memory, which
+/// is fixed as well: V of (R18) replaces G, and psi g replaces g in every equation above; H - M . q
+/// + K replaces H, and grad H - M replaces h t (R23). noexcept, allocation-free.
 class LocalModel {
  public:
   LocalModel(const Surface& surface, const SurfacePoint& point, double offset) noexcept
@@ -100,7 +103,8 @@ class LocalModel {
     const Vec3 r = x - c_;
     d.geometric = dot(n_, r);
     d.depth = d.geometric - offset_;
-    const Vec3 lateral = r - d.geometric * n_ - lateral_offset_ - shear(d) - grip_.micro_slip;
+    const Vec3 lateral =
+        soft_axes_.stretch(r - d.geometric * n_ - lateral_offset_ - shear(d) - grip_.micro_slip);
     d.lateral = norm(lateral);
     if (d.lateral > 0) d.tangent = (1.0 / d.lateral) * lateral;
     return d;
@@ -110,11 +114,11 @@ class LocalModel {
   Vec3 shear(const Deflection& d) const noexcept { return (d.depth - 0.5 * grip_.depth) * lean_; }
   /// q + e and the shear, m: how far the tip is from the anchor, across n.
   Vec3 lateral_displacement(const Deflection& d) const noexcept {
-    return d.lateral * d.tangent + shear(d) + grip_.micro_slip;
+    return unstretched(d) + shear(d) + grip_.micro_slip;
   }
   double lateral_distance(const Deflection& d) const noexcept {  ///< its length
-    const bool is_q = lean_ == Vec3{} && grip_.micro_slip == Vec3{};
-    return is_q ? d.lateral : norm(lateral_displacement(d));
+    const bool is_p = lean_ == Vec3{} && grip_.micro_slip == Vec3{} && !soft_axes_.any();
+    return is_p ? d.lateral : norm(lateral_displacement(d));
   }
   /// pieces: of the last evaluation; on return of this one.
   LocalResponse respond(const Deflection& d, ToolPieces& pieces) const noexcept {
@@ -152,13 +156,16 @@ class LocalModel {
   }
 
   /// The slip with c fixed after which the lateral force is `limit` (N), where the response is
-  /// known and exceeds it. Without memory it goes along t. With one the force keeps its direction
+  /// known and exceeds it. Without memory it goes along q. With one the force keeps its direction
   /// (R25). Neither raises E.
   LateralSlip slip_within(const Deflection& d, const LocalResponse& at, double limit,
                           ToolPieces& pieces) const noexcept {
     if (memory_ && memory_->lateral.any) return relaxed_slip_within(d, at, limit, pieces.relaxing);
     const double rho = lateral_below(d, limit, pieces);
-    return {d.lateral - rho, d.lateral - rho, d.tangent, rho, rho > 0 ? d.tangent : Vec3{}};
+    LateralSlip slip{d.lateral - rho, d.lateral - rho, d.tangent, rho,
+                     rho > 0 ? d.tangent : Vec3{}};
+    if (soft_axes_.any()) restore_direction(slip);
+    return slip;
   }
 
   /// Makes that slip: it goes into s. The depth does not change; the deflection and the response
@@ -199,9 +206,9 @@ class LocalModel {
   ///   z' = (q + s + e + sigma z) . n' - n . d,
   ///   dE/ds = sum (grad n_l . d)(G_l + H_l) + (g - h (t . sigma)) z'
   ///           - h (t . a' + (z + d0)(t . n') + z (t . sigma')),
-  /// with H_l and sigma_l times w_l(z_w), and z - z_w/2 beside sigma, where responses are coupled.
-  /// In an ordinary slide the anchor moves with c, a' = d; where c catches up with the anchor,
-  /// a' = 0. Without memory.
+  /// with S t for t and h t . (S' q) more where there are soft axes, with H_l and sigma_l times
+  /// w_l(z_w), and z - z_w/2 beside sigma, where responses are coupled. In an ordinary slide the
+  /// anchor moves with c, a' = d; where c catches up with the anchor, a' = 0. Without memory.
   double energy_slope(const Deflection& at, const Vec3& d, const Vec3& anchor_rate) const noexcept;
   double energy_slope(const Deflection& at, const Vec3& d) const noexcept {
     return energy_slope(at, d, d);
@@ -211,6 +218,7 @@ class LocalModel {
   const Vec3& contact_point() const noexcept { return c_; }
   const Vec3& normal() const noexcept { return n_; }
   const Vec3& lean() const noexcept { return lean_; }  ///< sigma, 1
+  const SoftAxes& soft_axes() const noexcept { return soft_axes_; }
   double offset() const noexcept { return offset_; }
   void set_offset(double offset) noexcept { offset_ = offset; }
   const Vec3& lateral_offset() const noexcept { return lateral_offset_; }
@@ -254,7 +262,22 @@ class LocalModel {
         n_(surface.normal(point)),
         response_(surface.response(point)),
         offset_(offset),
-        grip_(grip) {}
+        grip_(grip) {
+    if (surface.has_soft_axes()) soft_axes_ = surface.soft_axes(point, n_);
+  }
+  /// q, m.
+  Vec3 unstretched(const Deflection& d) const noexcept {
+    return soft_axes_.restore(d.lateral * d.tangent);
+  }
+  /// What q loses where rho falls to `lateral`, m.
+  Vec3 shortened(const Deflection& d, double lateral) const noexcept {
+    return soft_axes_.restore((d.lateral - lateral) * d.tangent);
+  }
+  /// From a slip in p to that in q.
+  void restore_direction(LateralSlip& slip) const noexcept {
+    slip.direction = soft_axes_.restore(slip.direction);
+    slip.distance = slip.scale * norm(slip.direction);
+  }
   const Vec3& lateral_weights() const noexcept {
     return coupled() ? weights_ : response_.natural();
   }
@@ -285,10 +308,13 @@ class LocalModel {
     r.normal_force = value.normal;
     r.lateral_force = value.lateral;
     r.energy = value.energy;
-    r.force = value.normal * n_ + leaning(value.lateral * d.tangent);
+    r.force = value.normal * n_ + felt(value.lateral * d.tangent);
   }
-  /// A^T h t: the part of the force of a lateral force in the response coordinates, N.
+  /// A^T S h t: the part of the force of a lateral force in the response coordinates, N.
+  Vec3 felt(const Vec3& lateral) const noexcept { return leaning(soft_axes_.stretch(lateral)); }
+  /// A^T of a lateral force, N.
   Vec3 leaning(const Vec3& lateral) const noexcept { return lateral - dot(lateral, lean_) * n_; }
+  double turning_of_soft_axes(const Deflection& at, const Vec3& d, const Vec3& turn) const noexcept;
   /// Takes these weights W_l of the lateral responses, and the lean sum W_l sigma_l.
   void hold(const Vec3& weights) noexcept {
     if (coupled()) weights_ = weights;
@@ -305,7 +331,7 @@ class LocalModel {
                        LocalResponse& r) const noexcept {
     r.lateral_force = norm(r.instant_lateral_force * d.tangent - relaxed);
     r.energy += stored - d.lateral * dot(change, d.tangent);
-    r.force = r.force - leaning(change);
+    r.force = r.force - felt(change);
   }
   LateralSlip relaxed_slip_within(const Deflection& d, const LocalResponse& at, double limit,
                                   TipPieces& pieces) const noexcept;
@@ -326,6 +352,7 @@ class LocalModel {
   Vec3 c_;
   Vec3 n_;
   Vec3 lean_{};  ///< sigma
+  SoftAxes soft_axes_;
   InterpolatedResponse response_;
   double offset_;
   Vec3 lateral_offset_{};

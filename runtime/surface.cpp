@@ -70,10 +70,15 @@ NodeRelaxation relaxation_of(const Library& library, std::size_t v) {
   return node;
 }
 
-Vec3 lean_of(const NodeResponse& response) {
-  Vec3 lean;
-  for (std::size_t i = 0; i < 3; ++i) lean[i] = static_cast<double>(response.lean[i]);
-  return lean;
+/// What was read from a file has been checked already.
+void check_soft_axes(const Library& library) {
+  for (std::size_t v = 0; v < library.responses.size(); ++v) {
+    const double length = norm(vec3_of(library.responses[v].soft_axis));
+    if (length == 0 || (length <= kMostSoftAxis && library.kind == ResponseKind::Coupled)) continue;
+    throw Error(ErrorKind::Configuration, "library vertex " + std::to_string(v),
+                "its soft axis is too long, or its responses are not coupled",
+                "fit the curves again");
+  }
 }
 
 void check_relaxation(const Library& library) {
@@ -125,7 +130,9 @@ Surface::Surface(const Library& library) : elements_(library.triangles.size()) {
     ++curves_at_;
   }
   leans_ = library.leans();
-  if (leans_) ++curves_at_;
+  has_soft_axes_ = library.has_soft_axes();
+  if (has_soft_axes_) check_soft_axes(library);
+  if (has_axes()) ++curves_at_;
   const std::vector<std::int32_t> record = build_nodes(library);
   for (std::size_t m = 0; m < elements_.size(); ++m) build_element(library, record, m);
   if (std::none_of(elements_.begin(), elements_.end(), [](const Element& e) { return e.active; })) {
@@ -176,7 +183,8 @@ void Surface::build_node(const Library& library, std::size_t v, CacheLine* memor
   }
   new (memory) SurfaceNode(node);
   if (library.relaxes()) new (memory + 1) NodeRelaxation(relaxation_of(library, v));
-  if (leans_) new (memory + curves_at_ - 1) NodeLean{lean_of(response)};
+  if (has_axes())
+    new (memory + curves_at_ - 1) NodeAxes{vec3_of(response.lean), vec3_of(response.soft_axis)};
 }
 
 void Surface::build_element(const Library& library, const std::vector<std::int32_t>& record,
@@ -302,7 +310,7 @@ void Surface::prefetch_opposite(const Element& e, std::size_t l,
   __builtin_prefetch(curves + in_use.lateral);
   if (in_use.coupling > 0) __builtin_prefetch(curves + in_use.coupling);
   if (!relaxes_alike_) __builtin_prefetch(record + 1);
-  if (leans_) __builtin_prefetch(curves - 1);
+  if (has_axes()) __builtin_prefetch(curves - 1);
 }
 
 Lanes Surface::fractions(const SurfacePoint& p) const noexcept {

@@ -11,6 +11,7 @@
 #include "runtime/interpolated_response.hpp"
 #include "runtime/lanes.hpp"
 #include "runtime/large_memory.hpp"
+#include "runtime/soft_axes.hpp"
 
 namespace palpate::runtime {
 
@@ -41,11 +42,13 @@ struct alignas(kCacheLine) NodeRelaxation {
 };
 static_assert(sizeof(NodeRelaxation) == kCacheLine);
 
-/// The lean of a vertex of a library that leans: the cache line before its curves.
-struct alignas(kCacheLine) NodeLean {
-  Vec3 lean{};  ///< 1
+/// The lean and the soft axis of a vertex of a library that has any: the cache line before its
+/// curves.
+struct alignas(kCacheLine) NodeAxes {
+  Vec3 lean{};       ///< sigma, 1
+  Vec3 soft_axis{};  ///< b, 1
 };
-static_assert(sizeof(NodeLean) == kCacheLine);
+static_assert(sizeof(NodeAxes) == kCacheLine);
 
 /// A point of the surface: an element and natural coordinates n_l >= 0 that sum to 1.
 struct SurfacePoint {
@@ -127,9 +130,23 @@ class Surface {
   }
   /// sigma of a vertex; zero where no node leans.
   Vec3 lean(const Element& e, std::size_t l) const noexcept {
-    if (!leans_) return {};
-    const auto record = static_cast<std::size_t>(e.vertices[l]) + curves_at_ - 1;
-    return reinterpret_cast<const NodeLean*>(&records_[record])->lean;
+    return leans_ ? axes(e, l).lean : Vec3{};
+  }
+  bool has_soft_axes() const noexcept { return has_soft_axes_; }  ///< whether a node has one
+  /// b of a vertex; zero where no node has one.
+  Vec3 soft_axis(const Element& e, std::size_t l) const noexcept {
+    return has_soft_axes_ ? axes(e, l).soft_axis : Vec3{};
+  }
+  /// S at a point with the normal n. @pre has_soft_axes()
+  SoftAxes soft_axes(const SurfacePoint& p, const Vec3& n) const noexcept {
+    const Element& e = element(p.element);
+    SoftAxes sum;
+    for (std::size_t l = 0; l < 3; ++l) {
+      const Vec3& b = axes(e, l).soft_axis;
+      sum.add(p.natural[l], b - dot(b, n) * n);
+    }
+    sum.finish();
+    return sum;
   }
   /// g_i at a point, interpolated; zero beyond the relaxation times. @pre they are not empty
   Lanes fractions(const SurfacePoint& p) const noexcept;
@@ -148,6 +165,11 @@ class Surface {
     return *reinterpret_cast<const SurfaceNode*>(
         &records_[static_cast<std::size_t>(e.vertices[l])]);
   }
+  const NodeAxes& axes(const Element& e, std::size_t l) const noexcept {
+    const auto record = static_cast<std::size_t>(e.vertices[l]) + curves_at_ - 1;
+    return *reinterpret_cast<const NodeAxes*>(&records_[record]);
+  }
+  bool has_axes() const noexcept { return leans_ || has_soft_axes_; }
 
   template <class T>
   using Table = std::vector<T, LargeMemory<T>>;
@@ -158,7 +180,7 @@ class Surface {
   std::vector<double> relaxation_times_;
   bool relaxes_alike_ = true;
   double tool_radius_ = 0, inverse_tool_radius_ = 0;
-  bool leans_ = false;
+  bool leans_ = false, has_soft_axes_ = false;
   std::size_t curves_at_ = 1;  ///< line of the curves of a node, counted from its first
 };
 

@@ -67,14 +67,15 @@ std::string cause(const TriangleBounds& bounds, double depth, const std::string&
   if (std::isinf(bounds.certificate.slip))
     return cause_unbounded(bounds.certificate, depth) + remedy_unbounded(slide_remedy);
   const SlideCauses& slide = bounds.causes;
-  if (slide.stiffness >= std::max({slide.variation, slide.slant, slide.curvature, slide.lean})) {
+  const double turning = std::max(slide.slant, slide.curvature);
+  const double of_axes = std::max(slide.lean, slide.softening);
+  if (slide.stiffness >= std::max({slide.variation, turning, of_axes}))
     return "the stiffest response, while sliding";
-  }
-  if (slide.variation >= std::max({slide.slant, slide.curvature, slide.lean})) {
+  if (slide.variation >= std::max(turning, of_axes))
     return "the change of the responses over the surface, while sliding";
-  }
-  if (slide.lean >= std::max(slide.slant, slide.curvature))
-    return "the lean of the responses, while sliding";
+  if (of_axes >= turning)
+    return slide.lean >= slide.softening ? "the lean of the responses, while sliding"
+                                         : "the soft axes of the responses, while sliding";
   return slide.slant >= slide.curvature ? "press directions oblique to the facet, while sliding"
                                         : "the curvature of the normals, while sliding";
 }

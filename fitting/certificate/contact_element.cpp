@@ -48,10 +48,33 @@ ContactElement contact_element(const Library& library, std::size_t index, double
   if (library.kind == ResponseKind::Coupled)
     element.coupling = couplings_of(library, triangle, frame);
   element.relaxes = library.relaxes();
-  for (std::size_t l = 0; l < 3; ++l)
-    for (std::size_t i = 0; i < 3; ++i)
-      element.lean[l][i] = static_cast<double>(response(library, triangle[l]).lean[i]);
+  for (std::size_t l = 0; l < 3; ++l) {
+    element.lean[l] = vec3_of(response(library, triangle[l]).lean);
+    element.soft_axis[l] = vec3_of(response(library, triangle[l]).soft_axis);
+  }
   return element;
+}
+
+/// B is the mean of the (P b_l)(P b_l)^T.
+double ContactElement::most_softening() const {
+  double largest = 0;
+  for (const Vec3& b : soft_axis) largest = std::max(largest, dot(b, b));
+  return largest > 0 ? kRoundingFactor * largest : 0;
+}
+
+/// dB/ds is P (sum (grad n_l . tau) b_l b_l^T) P less what turns with n, theory (6c): the first
+/// part is at most the Frobenius norm of the gradient of sum n_l b_l b_l^T.
+double ContactElement::most_softening_change() const {
+  double squares = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      const auto entry = [&](std::size_t l) { return soft_axis[l][i] * soft_axis[l][j]; };
+      const Vec3 gradient =
+          (entry(1) - entry(0)) * frame.gradient[1] + (entry(2) - entry(0)) * frame.gradient[2];
+      squares += dot(gradient, gradient);
+    }
+  }
+  return kRoundingFactor * (std::sqrt(squares) + 2 * most_softening() * frame.kappa);
 }
 
 /// sigma is the mean of those of the vertices, weighted, less its part along n. w does not fall.

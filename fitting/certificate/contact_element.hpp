@@ -25,6 +25,12 @@ struct ContactElement {
   bool relaxes = false;  ///< slip may begin below mu g: bounds hold whatever the tissue remembers
   std::array<Vec3, 3> lean{};  ///< sigma_l, 1; of coupled responses at w = 1
 
+  std::array<Vec3, 3> soft_axis{};  ///< b_l, 1, of coupled responses
+
+  bool has_soft_axes() const { return soft_axis != std::array<Vec3, 3>{}; }
+  double most_softening() const;  ///< sup |B| over the triangle
+  /// sup |dB/ds| across n over the triangle, along any direction in its plane, 1/m
+  double most_softening_change() const;
   bool leans() const { return lean != std::array<Vec3, 3>{}; }
   double most_lean(const Range& z) const;  ///< sup |sigma| over the triangle and a cell of depths
   /// sup |d sigma/ds| over the triangle and a cell of depths, along any direction in its plane, 1/m

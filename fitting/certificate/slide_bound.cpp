@@ -184,8 +184,30 @@ std::optional<SlideState> slide_state(const ContactElement& element, const Range
 /// sup |q| of (6).
 double rate_of_depth(const ContactElement& element, const SlideState& state) {
   const TriangleFrame& frame = element.frame;
-  return frame.sin_theta +
-         (state.rho.high + element.depth * element.most_lean(state.z)) * frame.kappa;
+  const double q = state.rho.high / (1 - element.most_softening());
+  return frame.sin_theta + (q + element.depth * element.most_lean(state.z)) * frame.kappa;
+}
+
+/// |v| of the soft axes, (9c), with what they add to q and s.
+double softening_part(const ContactElement& element, const SlideState& state) {
+  const double most = element.most_softening();
+  if (!(most > 0)) return 0;
+  const double mu = element.friction, kappa = element.frame.kappa, least = 1 - most;
+  const double turned = most / (2 * least) + (1 + mu) * most;
+  const double changed = mu * (1 / least + 1) * element.most_softening_change();
+  return state.max_g * (turned * kappa + changed) +
+         state.depth_slope * (1 / least - 1) * state.rho.high * kappa;
+}
+
+/// What the soft axes take from t . tau of (6): P of (6c) is at least cos theta less this.
+double softening_rate(const ContactElement& element, const SlideState& state) {
+  const double most = element.most_softening();
+  if (!(most > 0)) return 0;
+  const TriangleFrame& frame = element.frame;
+  const double least = 1 - most;
+  const double oblique = frame.sin_theta * frame.sin_theta / (2 * frame.cos_theta);
+  return most * frame.cos_theta + oblique * (1 - least * least) / (2 * least) +
+         element.most_softening_change() * state.rho.high / least;
 }
 
 /// What the lean adds to p of (6) and to the part across it: (6a).
@@ -211,7 +233,7 @@ double slide_rate(const ContactElement& element, const SlideState& state) {
   const TriangleFrame& frame = element.frame;
   // Terms of order 1 cancel here, so the rounding margin is absolute.
   double margin = frame.cos_theta - element.depth * frame.kappa - (kRoundingFactor - 1);
-  margin -= lean_rate(element, state);
+  margin -= lean_rate(element, state) + softening_rate(element, state);
   if (element.friction > 0) {
     if (!(state.h_rho > 0)) return kInfinity;
     margin -= state.limit_gradient / state.h_rho;
@@ -242,7 +264,9 @@ SlideBound cell_bound(const ContactElement& element, const SlideState& state) {
   causes.slant = scaled(slant);
   causes.curvature = scaled(curvature);
   causes.lean = scaled(lean_part(element, state));
-  const double moving = causes.variation + causes.slant + causes.curvature + causes.lean;
+  causes.softening = scaled(softening_part(element, state));
+  const double moving =
+      causes.variation + causes.slant + causes.curvature + causes.lean + causes.softening;
   // Without friction and motion the bound is a stored slope, which is exact.
   const double rounding = mu > 0 || moving > 0 ? kRoundingFactor : 1;
   return {rounding * (causes.stiffness + moving), causes};
@@ -286,6 +310,14 @@ double slipping_norm(double lean, double along, double mixed, double across) {
   return kRoundingFactor * std::sqrt(largest);
 }
 
+/// The same where responses have soft axes: S t and S s are not across each other, and not longer
+/// than 1.
+double slipping_norm(const ContactElement& element, double lean, double along, double mixed,
+                     double across) {
+  if (element.has_soft_axes()) return kRoundingFactor * leaned_norm(lean, along, mixed, across);
+  return slipping_norm(lean, along, mixed, across);
+}
+
 /// sup w' h within friction: w h <= mu g there.
 double largest_shrinking(const ContactElement& element, const Range& z) {
   double growth = 0;  // w'/w
@@ -320,8 +352,8 @@ double cell_stick(const ContactElement& element, const Range& z) {
 double cell_min_bound(const ContactElement& element, const Range& z) {
   const double g_z = element.normal.slope(z).high, lean = element.most_lean(z);
   const double by_depth = g_z + lean_growth(element, z), mixed = element.friction * g_z;
-  const double across = lean > 0 ? lateral_within(element, z) : 0;
-  return std::max(cell_stick(element, z), slipping_norm(lean, by_depth, mixed, across));
+  const double across = lean > 0 || element.has_soft_axes() ? lateral_within(element, z) : 0;
+  return std::max(cell_stick(element, z), slipping_norm(element, lean, by_depth, mixed, across));
 }
 
 /// Below every knot the normal responses are linear. If w is constant there, nothing else depends
@@ -331,9 +363,10 @@ double min_bound_beyond(const ContactElement& element, double depth) {
   if (element.coupling->slope(beyond).high > 0) return kInfinity;
   const double lateral = element.coupling->greatest_force(depth) * element.lateral.max_slope();
   const double g_z = element.normal.slope(beyond).high, lean = element.most_lean(beyond);
-  if (lean > 0)
-    return kRoundingFactor * std::max(slipping_norm(lean, g_z, element.friction * g_z, lateral),
-                                      leaned_norm(lean, g_z, 0, lateral));
+  if (lean > 0 || element.has_soft_axes())
+    return kRoundingFactor *
+           std::max(slipping_norm(element, lean, g_z, element.friction * g_z, lateral),
+                    leaned_norm(lean, g_z, 0, lateral));
   return kRoundingFactor * std::max(std::hypot(1.0, element.friction) * g_z, lateral);
 }
 

@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "format/numbers.hpp"
 
@@ -74,6 +75,22 @@ struct SlideJacobian::Facet {
   Range lean_turn;                 ///< sigma . dn/ds, 1/m
   Range lean_t_rate, lean_s_rate;  ///< t . d sigma/ds and s . d sigma/ds, 1/m
   Range lean_growth;               ///< t . d sigma/dz, 1/m
+  Range lean_s_growth;             ///< s . d sigma/dz, 1/m
+};
+
+/// S in the frame (t, s) of the facet, in which t is the direction of q, and B' = -dS/ds along tau.
+/// With l = |S t|: S q = rho e for e = S t/l, and d = n x e.
+struct SlideJacobian::Softening {
+  Range e_t, e_s;             ///< t . e and s . e
+  Range l, m;                 ///< t . S e and s . S e
+  Range det;                  ///< s . S d; t . S d = 0
+  Range b_tt, b_ts, b_ss;     ///< B
+  Range db_tt, db_ts, db_ss;  ///< B', 1/m
+
+  /// From (n, e, d) to (n, t, s): S v.
+  std::array<Range, 3> stretched(const Range& n, const Range& e, const Range& d) const {
+    return {n, l * e, m * e + det * d};
+  }
 };
 
 struct SlideJacobian::AtVertex {
@@ -99,8 +116,10 @@ struct SlideJacobian::Terms {
   Range mu_g_tau;      ///< derivative of mu g along tau
   Range limit_rate;    ///< decrease of rho_s along tau
   Range q, p, s;       ///< those of (6), less what a slide to the limit needs of p
+  Range length;        ///< |q|, m: rho, or rho/|S t|
   Range rate;          ///< decrease of rho - rho_s per unit motion of c
   double norm_M0 = 0;  ///< |M_0|
+  std::optional<Softening> soft;
 };
 
 SlideJacobian::SlideJacobian(const ContactElement& element) : element_(&element) {
@@ -111,10 +130,13 @@ SlideJacobian::SlideJacobian(const ContactElement& element) : element_(&element)
     direction_[l] = {dot(frame.inward[l], frame.normal), dot(frame.inward[l], x),
                      dot(frame.inward[l], y)};
     gradient_[l] = {dot(frame.gradient[l], x), dot(frame.gradient[l], y)};
+    soft_axis_[l] = {dot(element.soft_axis[l], frame.normal), dot(element.soft_axis[l], x),
+                     dot(element.soft_axis[l], y)};
     lean_[l] = {dot(element.lean[l], frame.normal), dot(element.lean[l], x),
                 dot(element.lean[l], y)};
   }
   leans_ = element.leans();
+  has_soft_axes_ = element.has_soft_axes();
   for (const double start : element.lateral.cells({0, element.lateral.last_knot()}, 1)) {
     LateralPiece piece{start};
     for (std::size_t l = 0; l < 3; ++l) {
@@ -240,7 +262,9 @@ void SlideJacobian::add_lean(const SlideCell& cell, Facet& f) const {
     }
     S = interpolated(cell, leans, w);
     change = rate(f, leans, w);
-    f.lean_growth = along_t(f, interpolated(cell, leans, growth));
+    const Axes grows = interpolated(cell, leans, growth);
+    f.lean_growth = along_t(f, grows);
+    f.lean_s_growth = along_s(f, grows);
   } else {
     S = interpolated(cell, leans);
     change = rate(f, leans);
@@ -251,6 +275,63 @@ void SlideJacobian::add_lean(const SlideCell& cell, Facet& f) const {
   f.lean_turn = f.lean_t * f.kappa_t + f.lean_s * f.kappa_s;
   f.lean_t_rate = along_t(f, change) - along_n * f.kappa_t;
   f.lean_s_rate = along_s(f, change) - along_n * f.kappa_s;
+}
+
+SlideJacobian::Softening SlideJacobian::softening(const SlideCell& cell, const Facet& f) const {
+  // sum n_l b_l b_l^T and its derivatives in the axes (N, x, y), turned by the middle of the
+  // azimuth
+  const Turned b = turned(soft_axis_, f.turn);
+  const double c0 = std::cos(f.turn), s0 = std::sin(f.turn);
+  std::array<std::array<Range, 3>, 3> sum, change;
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      const auto entry = [&](std::size_t l) { return b[i][l] * b[j][l]; };
+      sum[i][j] = over(cell.part, {Range{entry(0), entry(0)}, Range{entry(1), entry(1)},
+                                   Range{entry(2), entry(2)}});
+      double by_x = 0, by_y = 0;
+      for (std::size_t l = 1; l < 3; ++l) {
+        by_x += (entry(l) - entry(0)) * (c0 * gradient_[l][0] + s0 * gradient_[l][1]);
+        by_y += (entry(l) - entry(0)) * (c0 * gradient_[l][1] - s0 * gradient_[l][0]);
+      }
+      change[i][j] = by_x * f.cosine + by_y * f.sine;
+    }
+  }
+  // t, s and n in these axes
+  const auto in_axes = [&](const Range& N, const Range& tau, const Range& across) {
+    return std::array<Range, 3>{N, tau * f.cosine - across * f.sine,
+                                tau * f.sine + across * f.cosine};
+  };
+  const auto t = in_axes((-1) * f.n_tau / f.r, f.n_N / f.r, {});
+  const auto s = in_axes((-1) * f.n_b * f.n_N / f.r, (-1) * f.n_b * f.n_tau / f.r, f.r);
+  const auto n = in_axes(f.n_N, f.n_tau, f.n_b);
+  const auto form = [](const std::array<Range, 3>& u, const std::array<std::array<Range, 3>, 3>& x,
+                       const std::array<Range, 3>& v) {
+    Range whole{};
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t j = 0; j < 3; ++j) whole = whole + u[i] * (x[i][j] * v[j]);
+    return whole;
+  };
+  Softening soft;
+  soft.b_tt = form(t, sum, t);
+  soft.b_ts = form(t, sum, s);
+  soft.b_ss = form(s, sum, s);
+  const Range n_t = form(n, sum, t), n_s = form(n, sum, s);
+  soft.db_tt = form(t, change, t) - 2 * f.kappa_t * n_t;
+  soft.db_ts = form(t, change, s) - f.kappa_t * n_s - f.kappa_s * n_t;
+  soft.db_ss = form(s, change, s) - 2 * f.kappa_s * n_s;
+  // |B| is at most that of the longest b_l, and B is not negative
+  const double most = element_->most_softening();
+  const Range one{1, 1}, softened{0, most}, turned_away{-0.5 * most, 0.5 * most};
+  soft.b_tt = common(soft.b_tt, softened);
+  soft.b_ss = common(soft.b_ss, softened);
+  soft.b_ts = common(soft.b_ts, turned_away);
+  const Range tt = one - soft.b_tt, ts = (-1) * soft.b_ts, ss = one - soft.b_ss;
+  soft.l = common(root(square(tt) + square(ts)), {1 - most, 1});
+  soft.e_t = tt / soft.l;
+  soft.e_s = ts / soft.l;
+  soft.m = ts * (tt + ss) / soft.l;
+  soft.det = (tt * ss - square(ts)) / soft.l;
+  return soft;
 }
 
 Range SlideJacobian::along(const Facet& facet, const Values& value) const {
@@ -364,10 +445,16 @@ SlideJacobian::Terms SlideJacobian::terms(const SlideCell& cell, const Range& rh
   x.limit_rate = along(x.f, x.r.excess) / x.r.w_h_r;
   x.g_tau = along(x.f, x.r.g);
   x.mu_g_tau = mu * x.g_tau;
-  x.q = x.f.n_tau - rho * x.f.kappa_t;
+  if (has_soft_axes_) x.soft = softening(cell, x.f);
+  x.length = x.soft ? rho / x.soft->l : rho;
+  x.q = x.f.n_tau - x.length * x.f.kappa_t;
   x.p = x.f.t_tau + cell.reach * x.f.kappa_t;
   x.s = x.f.s_tau + cell.reach * x.f.kappa_s;
   if (leans_) add_lean(cell, grip, x);
+  if (x.soft) {
+    add_softening(x);
+    return x;
+  }
   x.rate = x.p - x.m * x.q - x.limit_rate;
   const Range zero{};
   const Entries fixed{{{x.n_z, zero, zero}, {x.mu_g_z, zero, zero}, {zero, zero, x.r.h_over_rho}}};
@@ -375,6 +462,21 @@ SlideJacobian::Terms SlideJacobian::terms(const SlideCell& cell, const Range& rh
                      : std::max(std::hypot(x.n_z.magnitude(), x.mu_g_z.magnitude()),
                                 x.r.h_over_rho.magnitude());
   return x;
+}
+
+/// (6c): p and s become those of S q, in the frame (n, e, d).
+void SlideJacobian::add_softening(Terms& x) const {
+  const Softening& soft = *x.soft;
+  const Range p = x.p, s = x.s;
+  const Range along = soft.e_t * soft.db_tt + soft.e_s * soft.db_ts;
+  const Range across = soft.e_t * soft.db_ts - soft.e_s * soft.db_tt;
+  x.p = soft.l * p + soft.m * s + x.length * along;
+  x.s = soft.det * s + x.length * across;
+  x.rate = x.p - x.m * x.q - x.limit_rate;
+  const Range zero{};
+  x.norm_M0 = leaned_norm(x.f, {{{x.n_z, zero, zero},
+                                 {soft.l * x.mu_g_z, zero, zero},
+                                 {soft.m * x.mu_g_z, zero, square(soft.det) * x.r.h_over_rho}}});
 }
 
 /// The z of (6a): what a lean shears is sigma (z - z_w/2), and z_w = z where responses are coupled.
@@ -389,7 +491,9 @@ void SlideJacobian::add_lean(const SlideCell& cell, Grip grip, Terms& x) const {
   x.p = x.p + z * x.f.lean_t_rate - x.f.lean_t * x.q;
   x.s = x.s + z * x.f.lean_s_rate - x.f.lean_s * x.q;
   if (!element_->coupling) return;
-  const Range grown = x.n_z - x.mu_g * x.f.lean_growth;
+  const Range growth =
+      x.soft ? x.soft->l * x.f.lean_growth + x.soft->m * x.f.lean_s_growth : x.f.lean_growth;
+  const Range grown = x.n_z - x.mu_g * growth;
   x.n_z = grip == Grip::Renewed ? grown : hull(grown, x.n_z);
 }
 
@@ -422,6 +526,7 @@ double SlideJacobian::bound(const SlideCell& cell) const {
 double SlideJacobian::bound_of_response(const SlideCell& cell, const Range& rho, Grip grip) const {
   const Terms x = terms(cell, rho, grip);
   if (!(x.r.w_h_r.low > 0)) return kInfinity;
+  if (x.soft) return bound_of_soft_response(x);
   Range v_n = x.g_tau - x.n_z * x.q - x.mu_g * x.f.kappa_t;
   Range v_t = x.mu_g_tau - x.mu_g_z * x.q + x.r.g_here * x.f.kappa_t;
   Range v_s = x.r.g_here * x.f.kappa_s - x.r.h_over_rho * x.s;
@@ -444,6 +549,62 @@ double SlideJacobian::bound_of_response(const SlideCell& cell, const Range& rho,
                                            {(-1) * v_s * x.m, v_s, x.r.h_over_rho}}}));
 }
 
+/// What the turning of S and A adds to the derivative of the force by a motion of c, in the frame
+/// (n, t, s): (9c), and (9b) with S e for t.
+SlideJacobian::Entries::value_type SlideJacobian::turning(const Terms& x) const {
+  const Softening& soft = *x.soft;
+  const Facet& f = x.f;
+  // B n' and B' e, across n
+  const Range turned_t = soft.b_tt * f.kappa_t + soft.b_ts * f.kappa_s;
+  const Range turned_s = soft.b_ts * f.kappa_t + soft.b_ss * f.kappa_s;
+  const Range changed_t = soft.db_tt * soft.e_t + soft.db_ts * soft.e_s;
+  const Range changed_s = soft.db_ts * soft.e_t + soft.db_ss * soft.e_s;
+  Entries::value_type v{x.mu_g * (soft.e_t * turned_t + soft.e_s * turned_s),
+                        x.r.g_here * turned_t - x.mu_g * changed_t,
+                        x.r.g_here * turned_s - x.mu_g * changed_s};
+  if (!leans_) return v;
+  const Range leaning = x.mu_g * (soft.l * f.lean_t + soft.m * f.lean_s);
+  const Range rate = soft.l * f.lean_t_rate + soft.m * f.lean_s_rate;
+  v[0] = v[0] - leaning * f.lean_turn - x.mu_g * rate + x.r.g_here * f.lean_turn;
+  v[1] = v[1] - leaning * f.kappa_t;
+  v[2] = v[2] - leaning * f.kappa_s;
+  return v;
+}
+
+/// The same as bound_of_response, with x' in the frame (n, t, s) and S (M_0 + v w^T) S.
+double SlideJacobian::bound_of_soft_response(const Terms& x) const {
+  const Softening& soft = *x.soft;
+  const Range kappa_e = soft.e_t * x.f.kappa_t + soft.e_s * x.f.kappa_s;
+  const Range kappa_d = soft.e_t * x.f.kappa_s - soft.e_s * x.f.kappa_t;
+  const Range v_n = x.g_tau - x.n_z * x.q - x.mu_g * kappa_e;
+  const Range v_e = x.mu_g_tau - x.mu_g_z * x.q + x.r.g_here * kappa_e;
+  const Range v_d = x.r.g_here * kappa_d - x.r.h_over_rho * x.s;
+  auto v = soft.stretched(v_n, v_e, v_d);
+  const auto more = turning(x);
+  for (std::size_t i = 0; i < 3; ++i) v[i] = v[i] + more[i];
+  if (is_zero(v[0]) && is_zero(v[1]) && is_zero(v[2])) return kRoundingFactor * x.norm_M0;
+  if (!(x.rate.low > 0)) return kInfinity;
+  const Range zero{}, fixed_d = square(soft.det) * x.r.h_over_rho;
+  // M_0 + v (-m, l, m_s)/rate, and with another v over l for a slide that is too long
+  const auto matrix = [&](const std::array<Range, 3>& by, const Range& divisor) {
+    const std::array<Range, 3> w{(-1) * x.m / divisor, soft.l / divisor, soft.m / divisor};
+    const Range first[3] = {x.n_z, soft.l * x.mu_g_z, soft.m * x.mu_g_z};
+    Entries entries;
+    for (std::size_t i = 0; i < 3; ++i)
+      entries[i] = {first[i] + by[i] * w[0], by[i] * w[1], by[i] * w[2]};
+    entries[2][2] = entries[2][2] + fixed_d;
+    return leaned_norm(x.f, entries);
+  };
+  const double norm = std::max(x.norm_M0, matrix(v, x.rate));
+  const Range moved = x.rate / soft.l;
+  if (moved.high <= 1) return kRoundingFactor * norm;
+  // The runtime moves c by |q| - |q_s|, which is more than needed: (10d).
+  const Range over{std::max(0.0, moved.low - 1), moved.high - 1};
+  const auto back = soft.stretched(zero, over * x.r.w_h_r, zero);
+  for (std::size_t i = 0; i < 3; ++i) v[i] = v[i] - soft.l * back[i];
+  return kRoundingFactor * std::max(norm, matrix(v, soft.l));
+}
+
 SlideCauses SlideJacobian::causes(const SlideCell& state) const {
   const Range rho = slip_limit(state);
   if (!(rho.high < kInfinity)) return {0, kInfinity, kInfinity, kInfinity};
@@ -461,7 +622,11 @@ SlideCauses SlideJacobian::causes(const SlideCell& state) const {
       length(x.r.g_z * x.f.n_tau, x.mu_g_z * x.f.n_tau, x.r.h_over_rho * x.f.s_tau),
       length(x.r.g_z * turned - x.mu_g * x.f.kappa_t, x.mu_g_z * turned + x.r.g_here * x.f.kappa_t,
              (x.r.g_here - x.r.h_over_rho * state.reach) * x.f.kappa_s)};
-  if (!leans_) return causes;
+  if (x.soft) {
+    const auto more = turning(x);
+    causes.softening = length(more[0], more[1], more[2]);
+  }
+  if (!leans_ || x.soft) return causes;
   const Range shift = sheared_depth(state) * x.f.lean_turn;
   Range n = x.n_z * shift, t = x.mu_g_z * shift;
   Range s = x.r.h_over_rho * (x.f.lean_s * x.q - sheared_depth(state) * x.f.lean_s_rate);

@@ -28,6 +28,7 @@ struct SlideCauses {
   double slant = 0;      ///< directions u_l oblique to the facet
   double curvature = 0;  ///< turning of n
   double lean = 0;       ///< shear by a straight press, and its change over the surface
+  double softening = 0;  ///< soft axes: their turning, and their change over the surface
 };
 
 /// df/dx' = M_0 + v w^T of (8) in docs/theory-fitting.md, entry by entry in the frame (n, t, s),
@@ -51,6 +52,7 @@ class SlideJacobian {
   struct AtVertex;
   struct Terms;  // of (8) and (9)
   struct Axes;
+  struct Softening;                                     // S and its derivative
   using Turned = std::array<std::array<double, 3>, 3>;  ///< components of the vectors of vertices
   using Weights = std::array<Range, 3>;                 ///< of the vertices
 
@@ -68,6 +70,7 @@ class SlideJacobian {
   static Range along_s(const Facet& facet, const Axes& a);
   Facet facet(const SlideCell& cell) const;
   void add_lean(const SlideCell& cell, Facet& facet) const;
+  Softening softening(const SlideCell& cell, const Facet& facet) const;
   void add_lean(const SlideCell& cell, Grip grip, Terms& terms) const;
   static void add_lean(const Terms& terms, Range& v_n, Range& v_t, Range& v_s);
   Range sheared_depth(const SlideCell& cell) const;
@@ -80,6 +83,9 @@ class SlideJacobian {
   double leaned_norm(const Facet& facet, const Entries& x) const;
   Terms terms(const SlideCell& cell, const Range& rho, Grip grip) const;
   double bound_of_response(const SlideCell& cell, const Range& rho, Grip grip) const;
+  double bound_of_soft_response(const Terms& x) const;
+  Entries::value_type turning(const Terms& x) const;
+  void add_softening(Terms& x) const;
   /// Derivative along tau of a quantity with these values at the vertices.
   Range along(const Facet& facet, const std::array<Range, 3>& values) const;
 
@@ -95,7 +101,8 @@ class SlideJacobian {
   std::array<std::array<double, 3>, 3> direction_{};  ///< u_l
   std::array<std::array<double, 2>, 3> gradient_{};   ///< grad n_l
   std::array<std::array<double, 3>, 3> lean_{};       ///< sigma_l, of coupled responses at w = 1
-  bool leans_ = false;
+  std::array<std::array<double, 3>, 3> soft_axis_{};  ///< b_l
+  bool leans_ = false, has_soft_axes_ = false;
 };
 
 }  // namespace palpate::fitting

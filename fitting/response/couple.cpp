@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "fitting/response/site_samples.hpp"
+#include "fitting/response/soft_axis.hpp"
 #include "runtime/response_curve.hpp"
 
 namespace palpate::fitting {
@@ -21,13 +22,13 @@ constexpr float kLevel = 0.05F;   // of the largest slope of w: treated as const
 struct Level {
   double depth = 0;
   double weight = 1;  ///< w at this depth
-  std::vector<std::vector<ForceSample>> paths;
+  std::vector<SoftDrag> paths;
 };
 
-std::vector<Level> levels_of(const SiteCurves& site) {
+std::vector<Level> levels_of(const SiteCurves& site, const Vec3& soft_axis) {
   std::vector<Level> levels;
   for (const double depth : lateral_depths(site)) {
-    Level level{depth, 1, lateral_paths(paths_at(site, depth))};
+    Level level{depth, 1, soft_drags(paths_at(site, depth), soft_axis)};
     if (!level.paths.empty()) levels.push_back(std::move(level));
   }
   return levels;
@@ -36,7 +37,7 @@ std::vector<Level> levels_of(const SiteCurves& site) {
 /// The w of a level that brings w f^r closest to its samples, by least squares.
 double weight_of(const Level& level, const runtime::CompiledCurve& lateral) {
   double above = 0, below = 0;
-  for (const auto& path : level.paths) {
+  for (const auto& path : along_stiffest(level.paths, lateral)) {
     for (const ForceSample& sample : with_forces_between(path)) {
       const double f = lateral.force(sample.displacement);
       above += f * sample.force;
@@ -47,11 +48,12 @@ double weight_of(const Level& level, const runtime::CompiledCurve& lateral) {
   return below > 0 && above > 0 ? above / below : 1;
 }
 
-ResponseCurve pooled_lateral(const std::vector<Level>& levels, const CurveFitSettings& settings,
-                             const std::string& where) {
+ResponseCurve pooled_lateral(const std::vector<Level>& levels,
+                             const runtime::CompiledCurve& lateral,
+                             const CurveFitSettings& settings, const std::string& where) {
   std::vector<std::vector<ForceSample>> scaled;
   for (const Level& level : levels) {
-    for (auto path : level.paths) {
+    for (auto path : along_stiffest(level.paths, lateral)) {
       for (ForceSample& sample : path) {
         sample.force /= level.weight;
         sample.mean /= level.weight;
@@ -105,18 +107,18 @@ void level_off(CouplingCurve& coupling) {
   slope.back() = 0;
 }
 
-CoupledLateral fit_coupled(const SiteCurves& site, double depth, const CurveFitSettings& settings,
-                           const std::string& where) {
-  std::vector<Level> levels = levels_of(at_every_depth(site));
+CoupledLateral fit_coupled(const SiteCurves& site, const Vec3& soft_axis, double depth,
+                           const CurveFitSettings& settings, const std::string& where) {
+  std::vector<Level> levels = levels_of(at_every_depth(site), soft_axis);
   const Level& middle = levels[levels.size() / 2];
   CoupledLateral result;
-  result.lateral = fit_curve(mean_lateral(middle.paths), settings, where).curve;
+  result.lateral = fit_curve(mean_lateral(along_stiffest(middle.paths, {})), settings, where).curve;
   for (int i = 0; i < kAlternations; ++i) {
     const runtime::CompiledCurve lateral(result.lateral);
     for (Level& level : levels) level.weight = weight_of(level, lateral);
     const double unit = middle.weight;
     for (Level& level : levels) level.weight /= unit;
-    result.lateral = pooled_lateral(levels, settings, where);
+    result.lateral = pooled_lateral(levels, lateral, settings, where);
   }
   result.coupling = coupling_of(levels, depth, settings.max_knots, where);
   return result;

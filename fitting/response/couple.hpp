@@ -7,6 +7,7 @@
 
 #include "fitting/response/curve_fit.hpp"
 #include "format/curves.hpp"
+#include "format/vec3.hpp"
 
 namespace palpate::fitting {
 
@@ -26,9 +27,10 @@ void level_off(CouplingCurve& coupling);
 /// 1949: the lateral stiffness of a bonded contact is proportional to its radius]. Below a
 /// twentieth of `depth` it is constant. The fit of the responses makes it a non-decreasing C1
 /// curve. With a single lateral depth only the square root remains.
+/// @param soft_axis  b of the site: f^r is the response along the stiffest direction
 /// @param depth  depth of the normal response, m
 /// @param where  name of the site in errors
-CoupledLateral fit_coupled(const SiteCurves& site, double depth, const CurveFitSettings& settings,
-                           const std::string& where);
+CoupledLateral fit_coupled(const SiteCurves& site, const Vec3& soft_axis, double depth,
+                           const CurveFitSettings& settings, const std::string& where);
 
 }  // namespace palpate::fitting

@@ -13,6 +13,7 @@
 #include "fitting/response/lean.hpp"
 #include "fitting/response/relaxation_fraction.hpp"
 #include "fitting/response/site_samples.hpp"
+#include "fitting/response/soft_axis.hpp"
 #include "format/error.hpp"
 #include "runtime/response_curve.hpp"
 
@@ -72,8 +73,8 @@ void check_settings(const FitSettings& settings) {
   }
 }
 
-/// Largest distance of the lateral response from any single path. It includes the loss by averaging
-/// over azimuths and, when decoupled, over depths.
+/// Largest distance of the lateral response from any single path. It includes what azimuths and
+/// depths share in one response, or, when decoupled, the loss by averaging over them.
 double lateral_error(const NodeResponse& node, ResponseKind kind, const SiteCurves& site) {
   const LeaningResponse rendered(node, kind);
   double largest = 0;
@@ -139,7 +140,9 @@ NodeResponse fit_site(const SiteCurves& site, const Vec3& inward, PressingTool t
   curve.zero_first_slope = false;
   NodeResponse node{ResponseStatus::Fitted, normal.curve, {}, normal.largest_error, 0, {}};
   if (settings.kind == ResponseKind::Coupled) {
-    CoupledLateral coupled = fit_coupled(site, normal_reach(site), curve, where);
+    if (settings.soft_axes) node.soft_axis = fit_soft_axis(site, inward);
+    CoupledLateral coupled =
+        fit_coupled(site, vec3_of(node.soft_axis), normal_reach(site), curve, where);
     node.lateral = std::move(coupled.lateral);
     node.coupling = std::move(coupled.coupling);
   } else {

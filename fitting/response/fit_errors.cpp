@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "fitting/response/site_samples.hpp"
+#include "fitting/response/soft_axis.hpp"
 #include "format/to_index.hpp"
 #include "runtime/response_curve.hpp"
 
@@ -38,7 +39,8 @@ double lateral_miss(const NodeResponse& node, ResponseKind kind, const SiteCurve
   const runtime::CompiledCurve weight(node.coupling.curve, static_cast<double>(node.coupling.base));
   double largest = 0;
   for (const double depth : lateral_depths(site)) {
-    const auto paths = lateral_paths(paths_at(site, depth));
+    const auto paths =
+        along_stiffest(soft_drags(paths_at(site, depth), vec3_of(node.soft_axis)), lateral);
     if (!paths.empty())
       largest = std::max(largest, largest_miss(lateral, weight.force(depth), mean_lateral(paths)));
   }

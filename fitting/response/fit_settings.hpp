@@ -17,7 +17,8 @@ struct FitSettings {
   bool interpolate = false;  ///< Interpolate sites that were not computed; status Interpolated.
   /// Minimise the error in the mean over the triangles instead of at the nodes (between_nodes.hpp).
   bool between_nodes = false;
-  bool lean = true;  ///< A straight press leans where its samples do (lean.hpp).
+  bool lean = true;       ///< A straight press leans where its samples do (lean.hpp).
+  bool soft_axes = true;  ///< Coupled responses are softer where drags are (soft_axis.hpp).
   ResponseKind kind = ResponseKind::Decoupled;
 };
 

@@ -152,8 +152,10 @@ std::vector<DragsAtDepth> drags_of(const SiteCurves& site, const Vec3& inward,
 
 LeaningResponse::LeaningResponse(const NodeResponse& node, ResponseKind kind)
     : lateral_(node.lateral), coupling_(coupling_of(node, kind)) {
-  for (std::size_t i = 0; i < 3; ++i) lean_[i] = static_cast<double>(node.lean[i]);
-  length_ = norm(lean_);
+  soft_axis_ = vec3_of(node.soft_axis);
+  lean_ = vec3_of(node.lean);
+  stretched_lean_ = stretch(lean_);
+  length_ = norm(stretched_lean_);
 }
 
 runtime::CurveValue LeaningResponse::weight(double z) const {
@@ -162,7 +164,7 @@ runtime::CurveValue LeaningResponse::weight(double z) const {
   return coupling_.evaluate(z);
 }
 
-/// d|q|/dz = w |sigma| - (w'/w) h/h': the force w h grows with the lateral deflection alone.
+/// d|p|/dz = w |S sigma| - (w'/w) h/h': the force w h grows with the lateral deflection alone.
 double LeaningResponse::lateral_rate(double z, double lateral) const {
   const runtime::CurveValue w = weight(z), h = lateral_.evaluate(lateral);
   if (!(h.slope > 0)) return w.force * length_;
@@ -198,17 +200,18 @@ double LeaningResponse::normal_force(double z) const {
 
 Vec3 LeaningResponse::transverse_force(double z) const {
   if (!(length_ > 0)) return {};
-  return (-press(z).force / length_) * lean_;
+  return (-press(z).force / length_) * stretch(stretched_lean_);
 }
 
 double LeaningResponse::drag_force(double z, double d, const Vec3& direction) const {
   const Press at = press(z);
-  const Vec3 before = length_ > 0 ? (-at.lateral / length_) * lean_ : Vec3{};
-  const Vec3 q = before + d * direction;
-  const double rho = norm(q);
-  const double along = rho > 0 ? dot(q, direction) / rho : 0;
-  const double leaning = at.lateral > 0 ? at.force * dot(before, direction) / at.lateral : 0;
-  return weight(z).force * lateral_.force(rho) * along - leaning;
+  const Vec3 before = length_ > 0 ? (-at.lateral / length_) * stretched_lean_ : Vec3{};
+  const Vec3 along = stretch(direction);
+  const Vec3 p = before + d * along;
+  const double rho = norm(p);
+  const double dragged = rho > 0 ? weight(z).force * lateral_.force(rho) * dot(p, along) / rho : 0;
+  const double leaning = at.lateral > 0 ? at.force * dot(before, along) / at.lateral : 0;
+  return dragged - leaning;
 }
 
 namespace {

@@ -196,6 +196,18 @@ Library leaning(Library library, double most) {
   return library;
 }
 
+Library soft_axes(Library library, double most) {
+  for (std::size_t v = 0; v < library.responses.size(); ++v) {
+    const Vec3 &x = library.positions[v], &n = library.inward[v];
+    const Vec3 any{std::cos(60 * x[1] - 80 * x[2]), std::sin(70 * x[0] + 90 * x[2]),
+                   std::cos(50 * x[0] + 100 * x[1])};
+    const Vec3 across = any - dot(any, n) * n;
+    for (std::size_t i = 0; i < 3; ++i)
+      library.responses[v].soft_axis[i] = static_cast<float>(most / std::sqrt(3.0) * across[i]);
+  }
+  return library;
+}
+
 Library sphere(int level, double radius, const Responses& responses) {
   return bumpy_sphere(level, radius, 0, responses);
 }

@@ -36,6 +36,9 @@ Library relaxing(Library library, const std::vector<double>& times, bool alike);
 /// The same library with presses that lean by up to `most` across the press directions, in
 /// directions that turn over the surface.
 Library leaning(Library library, double most);
+/// The same coupled library with soft axes up to `most` long across the press directions, in
+/// directions that change over the surface.
+Library soft_axes(Library library, double most);
 
 /// Icosahedron subdivided `level` times, vertices on the sphere, directions radial.
 Library sphere(int level, double radius, const Responses& responses);

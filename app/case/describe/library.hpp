@@ -33,6 +33,10 @@ void describe_fit(V& v, fitting::FitSettings& s) {
          {"lean",
           "a straight press leans where the force of the solid does: beside supports, above "
           "inclusions"});
+  v.flag(s.soft_axes,
+         {"soft_axes",
+          "the lateral response is softer in the directions in which drags are; of coupled "
+          "responses, by `drag_across` or several `azimuths`"});
   describe_choice(
       v, s.kind,
       {"responses",

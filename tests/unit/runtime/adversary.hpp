@@ -84,6 +84,15 @@ inline Library body_named(const std::string& name) {
     return leaning(coupled(thin_body(8, 0.08, 0.0015, varying(0.5))), 0.2);
   if (name == "leaning_relaxing")
     return leaning(relaxing(bumpy_sphere(3, 0.03, 0.25, bent(0.4)), {0.01, 0.1, 1}, false), 0.2);
+  if (name == "soft")
+    return soft_axes(leaning(coupled(bumpy_sphere(3, 0.03, 0.25, varying(0.3))), 0.15), 0.6);
+  if (name == "soft_thin") return soft_axes(coupled(thin_body(8, 0.08, 0.0015, varying(0.5))), 0.6);
+  if (name == "soft_relaxing") {
+    return soft_axes(leaning(relaxing(growing_unevenly(bumpy_sphere(3, 0.03, 0.25, bent(0.4))),
+                                      {0.01, 0.1, 1}, false),
+                             0.15),
+                     0.6);
+  }
   if (name == "hills") return bumpy_sphere(3, 0.03, 0.25, varying(0.5));
   if (name == "cube") return cube(6, 0.06, varying(0.5));
   return thin_body(8, 0.08, 0.0015, varying(0.5));
@@ -142,7 +151,8 @@ inline auto adversary_cases() {
       AdversaryCase{"relaxing_grip", 0.3, 5e-3}, AdversaryCase{"relaxing_grip", 0.7, 0},
       AdversaryCase{"leaning", 0.3, 5e-3}, AdversaryCase{"leaning_rims", 0.3, 0},
       AdversaryCase{"leaning_rims", 0, 5e-3}, AdversaryCase{"leaning_thin", 0.5, 5e-3},
-      AdversaryCase{"leaning_relaxing", 0.3, 5e-3});
+      AdversaryCase{"leaning_relaxing", 0.3, 5e-3}, AdversaryCase{"soft", 0.3, 5e-3},
+      AdversaryCase{"soft_thin", 0.5, 0}, AdversaryCase{"soft_relaxing", 0.3, 5e-3});
 }
 
 inline std::string case_name(const ::testing::TestParamInfo<AdversaryCase>& about) {

@@ -54,7 +54,7 @@ class LocalModelTest : public ::testing::Test {
     std::uniform_real_distribution<double> any(-1, 1);
     const SurfacePoint p = random_point();
     LocalModel model(body, p, 0.0005);
-    model.set_grip({body.leans() ? 0.003 : 0.0, {}});
+    model.set_grip({body.leans() || body.has_soft_axes() ? 0.003 : 0.0, {}});
     const Vec3 x = random_tip(model);
     model.set_lateral_offset(0.002 * Vec3{any(random_), any(random_), any(random_)});
     const Vec3 anchor = model.contact_point() + model.lateral_offset();
@@ -81,6 +81,7 @@ class LocalModelTest : public ::testing::Test {
 };
 
 constexpr double kMostLean = 0.3;
+constexpr double kLongestSoftAxis = 0.5;
 
 /// Responses that lean, decoupled and coupled in turn.
 class LeaningModelTest : public LocalModelTest {
@@ -135,6 +136,68 @@ TEST_F(LeaningModelTest, AStraightPressLeansAgainstItsLean) {
 
 TEST_F(LeaningModelTest, EnergySlopeAgreesWithMovingTheContactPointAndTheAnchor) {
   for (int trial = 0; trial < 1000; ++trial) expect_slope_of_energy(surface(trial), trial % 4 < 2);
+}
+
+/// Coupled responses with soft axes, which lean or not in turn.
+class SoftModelTest : public LocalModelTest {
+ protected:
+  const Surface& surface(int trial) const { return both_[static_cast<std::size_t>(trial % 2)]; }
+
+ private:
+  std::array<Surface, 2> both_{
+      Surface(soft_axes(coupled(bumpy_sphere(2, 0.03, 0.2, uneven)), kLongestSoftAxis)),
+      Surface(soft_axes(leaning(coupled(bumpy_sphere(2, 0.03, 0.2, uneven)), kMostLean),
+                        kLongestSoftAxis))};
+};
+
+TEST_F(SoftModelTest, ForceIsTheGradientOfTheEnergy) {
+  const double h = 1e-7;
+  std::uniform_real_distribution<double> any(-0.003, 0.003);
+  double furthest = 0;
+  for (int trial = 0; trial < 600; ++trial) {
+    LocalModel model(surface(trial), random_point(), 0.0004);
+    model.set_grip({0.003, {}});
+    const Vec3 x = random_tip(model);
+    model.set_lateral_offset({any(random_), any(random_), any(random_)});
+    const Deflection d = model.deflection(x);
+    const Vec3 q = model.lateral_displacement(d) - model.shear(d), f = force(model, x);
+    const Vec3 across = f - dot(f, model.normal()) * model.normal();
+    furthest = std::max(furthest, norm(cross(q, across)) / (norm(q) * norm(across)));
+    EXPECT_LE(norm(across), model.respond(d).lateral_force * (1 + 1e-12));  // |S| <= 1
+    for (std::size_t i = 0; i < 3; ++i) {
+      Vec3 up = x, down = x;
+      up[i] += h;
+      down[i] -= h;
+      EXPECT_NEAR((energy(model, up) - energy(model, down)) / (2 * h), f[i], 1e-7);
+    }
+  }
+  EXPECT_GT(furthest, 0.1);  // forces are not along the deflections
+}
+
+TEST_F(SoftModelTest, EnergySlopeAgreesWithMovingTheContactPointAndTheAnchor) {
+  for (int trial = 0; trial < 1000; ++trial) expect_slope_of_energy(surface(trial), trial % 4 < 2);
+}
+
+TEST_F(SoftModelTest, ASlipBringsTheForceToItsLimitInTheSameDirection) {
+  for (int trial = 0; trial < 300; ++trial) {
+    LocalModel model(surface(trial), random_point(), 0);
+    model.set_grip({0.003, {}});
+    const Vec3 x = random_tip(model);
+    runtime::ToolPieces pieces;
+    Deflection d = model.deflection(x);
+    runtime::LocalResponse at = model.respond(d, pieces);
+    const double limit = 0.6 * at.lateral_force, before = at.energy;
+    const Vec3 tangent = d.tangent;
+    const auto slip = model.slip_within(d, at, limit, pieces);
+    EXPECT_NEAR(slip.distance, norm(slip.part(1)), 1e-15);
+    model.slip(slip, d, at, pieces);
+    // The deflection at x is that with the new offset.
+    const Deflection there = model.deflection(x);
+    EXPECT_NEAR(there.lateral, d.lateral, 1e-12);
+    EXPECT_NEAR(norm(there.tangent - tangent), 0, 1e-9);
+    EXPECT_NEAR(model.respond(there).lateral_force, limit, 1e-9);
+    EXPECT_LT(at.energy, before);
+  }
 }
 
 TEST_F(LocalModelTest, ForceIsTheGradientOfTheEnergy) {

@@ -64,6 +64,23 @@ std::array<double, 3> lateral_weights(const Library& library, const runtime::Sur
   return weights;
 }
 
+Vec3 across(const Vec3& normal, const std::array<float, 3>& v) {
+  const Vec3 whole = vec3_of(v);
+  return whole - dot(whole, normal) * normal;
+}
+
+/// S v.
+Vec3 stretched(const Library& library, const runtime::ContactObservation& model, const Vec3& v) {
+  const Triangle& t = library.triangles[static_cast<std::size_t>(model.point.element)];
+  Vec3 sum = v;
+  for (std::size_t l = 0; l < 3; ++l) {
+    const NodeResponse& node = library.responses[static_cast<std::size_t>(t[l])];
+    const Vec3 b = across(model.normal, node.soft_axis);
+    sum = sum - (model.point.natural[l] * dot(b, v)) * b;
+  }
+  return sum;
+}
+
 }  // namespace
 
 ModelEnergy model_energy(const Library& library, const runtime::ContactObservation& model,
@@ -78,12 +95,11 @@ ModelEnergy model_energy(const Library& library, const runtime::ContactObservati
   Vec3 sigma{};
   for (std::size_t l = 0; l < 3; ++l) {
     const auto& lean = library.responses[static_cast<std::size_t>(t[l])].lean;
-    const Vec3 whole{static_cast<double>(lean[0]), static_cast<double>(lean[1]),
-                     static_cast<double>(lean[2])};
-    sigma = sigma + weights[l] * (whole - dot(whole, model.normal) * model.normal);
+    sigma = sigma + weights[l] * across(model.normal, lean);
   }
-  energy.lateral_deflection = r - depth * model.normal - (z - 0.5 * model.grip.depth) * sigma -
-                              model.lateral_offset - model.grip.micro_slip;
+  const Vec3 q = r - depth * model.normal - (z - 0.5 * model.grip.depth) * sigma -
+                 model.lateral_offset - model.grip.micro_slip;
+  energy.lateral_deflection = stretched(library, model, q);
   const double rho = norm(energy.lateral_deflection);
   energy.depth = z;
   for (std::size_t l = 0; l < 3; ++l) {
@@ -232,6 +248,10 @@ double MemoryTwin::energy(const runtime::ContactObservation& model, const Vec3& 
 
 Vec3 MemoryTwin::lateral_force(const runtime::ContactObservation& model, const Vec3& x) const {
   return gradient(model_energy(library_, model, x).lateral_deflection) - lateral_sums().relaxed;
+}
+
+Vec3 MemoryTwin::felt_force(const runtime::ContactObservation& model, const Vec3& x) const {
+  return stretched(library_, model, lateral_force(model, x));
 }
 
 /// Is there no normal contact?
@@ -495,7 +515,7 @@ void WatchedContact::compare(const Vec3& x, const runtime::ContactObservation& b
   const Vec3 felt = seen().force - dot(seen().force, seen().normal) * seen().normal;
   largest_lateral_error =
       std::max(largest_lateral_error,
-               std::max(norm(felt - memory_.lateral_force(seen(), x)), memory_.misdirected()) /
+               std::max(norm(felt - memory_.felt_force(seen(), x)), memory_.misdirected()) /
                    (kForceTolerance + kNoDeflection * bound_));
   if (norm(seen().relaxed_lateral_force) > 0) ++dragged;
 }

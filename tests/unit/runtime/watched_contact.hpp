@@ -19,7 +19,7 @@ struct ModelEnergy {
   double normal = 0, lateral = 0;  ///< J
   double depth = 0;                ///< m
   double normal_force = 0;         ///< g, N
-  Vec3 lateral_deflection{};       ///< q, m
+  Vec3 lateral_deflection{};       ///< S q, m
 };
 ModelEnergy model_energy(const Library& library, const runtime::ContactObservation& model,
                          const Vec3& x);
@@ -37,6 +37,8 @@ class MemoryTwin {
   double energy(const runtime::ContactObservation& model, const Vec3& x) const;
   /// The lateral force of a local model with the memory and the grip as they are, N.
   Vec3 lateral_force(const runtime::ContactObservation& model, const Vec3& x) const;
+  /// The same as the tool feels it: S times it, N.
+  Vec3 felt_force(const runtime::ContactObservation& model, const Vec3& x) const;
   /// A step of dt (s) that led from one observation to the other, with the tip at x. @return what
   /// relaxation has dissipated, J.
   double step(const runtime::ContactObservation& before, const runtime::ContactObservation& after,

@@ -25,6 +25,7 @@ struct Contact {
   Vec3 force{};
   double z = 0, rho = 0, g = 0, h = 0, energy = 0;
   Vec3 n{}, t{};
+  Vec3 q{};  ///< unit: t where there are no soft axes
 };
 
 inline constexpr double kPresent = std::numeric_limits<double>::quiet_NaN();
@@ -39,8 +40,8 @@ class PlainModel {
       u_[l] = library.inward[v];
       normal_[l] = runtime::CompiledCurve(library.responses[v].normal);
       lateral_[l] = runtime::CompiledCurve(library.responses[v].lateral);
-      for (std::size_t i = 0; i < 3; ++i)
-        lean_[l][i] = static_cast<double>(library.responses[v].lean[i]);
+      lean_[l] = vec3_of(library.responses[v].lean);
+      soft_axis_[l] = vec3_of(library.responses[v].soft_axis);
       if (library.kind == ResponseKind::Decoupled) continue;
       const CouplingCurve& w = library.responses[v].coupling;
       weight_[l] = runtime::CompiledCurve(w.curve, static_cast<double>(w.base));
@@ -74,6 +75,18 @@ class PlainModel {
     return sum - dot(sum, n) * n;
   }
 
+  /// S v, of v across n(c).
+  Vec3 stretched(const Vec3& c, const Vec3& v) const {
+    const auto w = natural(c);
+    const Vec3 n = direction(c);
+    Vec3 sum = v;
+    for (std::size_t l = 0; l < 3; ++l) {
+      const Vec3 b = soft_axis_[l] - dot(soft_axis_[l], n) * n;
+      sum = sum - w[l] * dot(b, v) * b;
+    }
+    return sum;
+  }
+
   /// What a straight press to z shears where the contact holds a depth.
   Vec3 shear(const Vec3& c, double z, double held) const {
     return (coupled() ? z - 0.5 * held : z) * lean(c, held);
@@ -91,8 +104,12 @@ class PlainModel {
     const double holds = std::isnan(held) ? state.z : held;
     const Vec3 sheared = shear(c, state.z, std::isnan(before) ? holds : before);
     const Vec3 lateral = delta - state.z * state.n - sheared;
-    state.rho = norm(lateral);
-    if (state.rho > 0) state.t = (1 / state.rho) * lateral;
+    const Vec3 p = stretched(c, lateral);
+    state.rho = norm(p);
+    if (state.rho > 0) {
+      state.t = (1 / state.rho) * p;
+      state.q = unit(lateral);
+    }
     for (std::size_t l = 0; l < 3; ++l) {
       const double weight = weight_at(l, holds);
       const double H = lateral_[l].energy(state.rho);
@@ -100,8 +117,8 @@ class PlainModel {
       state.h += w[l] * weight * lateral_[l].force(state.rho);
       state.energy += w[l] * (normal_[l].energy(state.z) + weight * H);
     }
-    const double against = state.h * dot(state.t, lean(c, holds));
-    state.force = (state.g - against) * state.n + state.h * state.t;
+    const Vec3 felt = state.h * stretched(c, state.t);
+    state.force = (state.g - dot(felt, lean(c, holds))) * state.n + felt;
     return state;
   }
 
@@ -129,7 +146,7 @@ class PlainModel {
       const double depth = std::isnan(held) ? state.z : held;
       const double excess = state.rho - slip_limit(c, depth, mu * state.g);
       if (excess < 1e-16) return c;
-      c = c + excess * in_plane(state.t);
+      c = c + excess / norm(stretched(c, state.q)) * in_plane(state.q);
     }
     return std::nullopt;
   }
@@ -142,7 +159,7 @@ class PlainModel {
     return z > 0 ? weight_[l].force(z) : weight_[l].pieces().front().force;
   }
 
-  std::array<Vec3, 3> x_{}, u_{}, lean_{};
+  std::array<Vec3, 3> x_{}, u_{}, lean_{}, soft_axis_{};
   std::array<runtime::CompiledCurve, 3> normal_, lateral_, weight_;
   Vec3 facet_{};
 };
@@ -178,6 +195,18 @@ inline void lean(Library& library, std::mt19937& engine, double most) {
   }
 }
 
+/// Soft axes up to `most`, each in its own direction across the press.
+inline void soften(Library& library, std::mt19937& engine, double most) {
+  std::uniform_real_distribution<double> u(-1, 1);
+  for (std::size_t v = 0; v < library.responses.size(); ++v) {
+    const Vec3& n = library.inward[v];
+    const Vec3 any = unit({u(engine), u(engine), u(engine)});
+    const Vec3 across = most * std::sqrt(std::abs(u(engine))) * unit(any - dot(any, n) * n);
+    for (std::size_t i = 0; i < 3; ++i)
+      library.responses[v].soft_axis[i] = static_cast<float>(across[i]);
+  }
+}
+
 /// A tool in contact: c inside, z + d0 <= depth, lateral deflection rho in a random direction.
 struct Start {
   Vec3 c{}, x{};
@@ -200,7 +229,8 @@ inline Start random_start(std::mt19937& engine, const PlainModel& model, double 
   const Vec3 n = model.direction(start.c);
   const Vec3 any = unit({u(engine) - 0.5, u(engine) - 0.5, u(engine) - 0.5});
   const Vec3 t = unit(any - dot(any, n) * n);
-  start.x = start.c + (z + start.d0) * n + lateral(start.c, z) * t + model.shear(start.c, z, z);
+  const double q = lateral(start.c, z) / norm(model.stretched(start.c, t));
+  start.x = start.c + (z + start.d0) * n + q * t + model.shear(start.c, z, z);
   return start;
 }
 
@@ -266,7 +296,8 @@ inline SlidingState random_slide(std::mt19937& engine, const PlainModel& model,
   const Vec3 t = unit(tau - (dot(tau, n) / dot(frame.normal, n)) * frame.normal);
   const double g = model.at(state.start.c + z * n, state.start.c, 0).g;
   const double rho = model.slip_limit(state.start.c, z, element.friction * g);
-  state.start.x = state.start.c + (z + d0) * n + rho * t + model.shear(state.start.c, z, z);
+  const double q = rho / norm(model.stretched(state.start.c, t));
+  state.start.x = state.start.c + (z + d0) * n + q * t + model.shear(state.start.c, z, z);
   const SlideCell::Natural place{a, b, 1 - a - b};
   state.cell = {{place, place, place}, {azimuth, azimuth}, {z, z}, {z + d0, z + d0}};
   return state;

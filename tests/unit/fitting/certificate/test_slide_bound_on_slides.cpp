@@ -56,6 +56,7 @@ TEST(StickBound, NoCoupledJacobianWithinTheSlipLimitIsSteeper) {
     Library library = random_triangle(engine, 0.2, 0.5);
     couple(library, engine, 0.2);
     if (trial % 2 == 1) lean(library, engine, 0.2);
+    if (trial % 4 >= 2) soften(library, engine, 0.4);
     CertifySettings settings;
     settings.friction = 0.1 + 0.2 * (trial % 4);
     certify(library, settings);
@@ -121,6 +122,26 @@ TEST(SlipBound, NoSlidingPathIsSteeperWherePressesLean) {
       Library library = random_triangle(engine, 0.03, 0.05 + 0.1 * (trial % 3));
       if (trial % 2 == 0) couple(library, engine, 0.1);
       lean(library, engine, 0.1);
+      CertifySettings settings;
+      settings.friction = mu;
+      certify(library, settings);
+      if (std::isinf(library.certificate.slip)) continue;
+      try_slides(engine, library, mu, census);
+    }
+  }
+  EXPECT_GT(census.slides, 10000);
+  EXPECT_GT(census.closest, 0.75);
+}
+
+TEST(SlipBound, NoSlidingPathIsSteeperWhereResponsesHaveSoftAxes) {
+  std::mt19937 engine(42);
+  SlideCensus census;
+  for (const double mu : {0.1, 0.3, 0.6}) {
+    for (int trial = 0; trial < 40; ++trial) {
+      Library library = random_triangle(engine, 0.03, 0.05 + 0.1 * (trial % 3));
+      couple(library, engine, 0.1);
+      if (trial % 2 == 0) lean(library, engine, 0.1);
+      soften(library, engine, 0.4);
       CertifySettings settings;
       settings.friction = mu;
       certify(library, settings);

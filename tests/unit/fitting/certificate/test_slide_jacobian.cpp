@@ -38,6 +38,29 @@ TEST(SlideJacobian, OfOneStateIsTheLargestForceGradientOfASlide) {
   }
 }
 
+TEST(SlideJacobian, OfOneStateWithSoftAxesIsTheLargestForceGradientOfASlide) {
+  std::mt19937 engine(46);
+  for (const double most_lean : {0.0, 0.15}) {
+    int alike = 0;
+    for (int trial = 0; trial < 120; ++trial) {
+      Library library = random_triangle(engine, 0.06, 0.2);
+      couple(library, engine, 0.3);
+      lean(library, engine, most_lean);
+      soften(library, engine, 0.5);
+      const double mu = 0.1 + 0.2 * (trial % 3);
+      const ContactElement element = contact_element(library, 0, 0.008, mu);
+      const PlainModel model(library, 0);
+      const SlidingState state = random_slide(engine, model, element);
+      const double expected = SlideJacobian(element).bound(state.cell);
+      ASSERT_TRUE(std::isfinite(expected));
+      const double found = steepest_step(engine, model, state.start, mu);
+      EXPECT_LE(found, expected * (1 + 1e-4)) << "lean " << most_lean << ", trial " << trial;
+      alike += found > 0.97 * expected ? 1 : 0;
+    }
+    EXPECT_GT(alike, 80) << "lean " << most_lean;
+  }
+}
+
 TEST(SlideJacobian, NoStateOfACellIsSteeperThanItsBound) {
   std::mt19937 engine(47);
   std::uniform_real_distribution<double> u(0, 1);
@@ -47,6 +70,7 @@ TEST(SlideJacobian, NoStateOfACellIsSteeperThanItsBound) {
     Library library = random_triangle(engine, 0.1, 0.3);
     if (trial % 2 == 1) couple(library, engine, 0.1);
     if (trial % 3 == 0) lean(library, engine, 0.1);
+    if (trial % 4 == 1) soften(library, engine, 0.4);
     const ContactElement element = contact_element(library, 0, 0.008, 0.1 + 0.2 * (trial % 3));
     const SlideJacobian jacobian(element);
     SlideCell cell;

@@ -34,7 +34,7 @@ TEST(Couple, APowerLawOfDepthIsRecoveredBetweenTheDepths) {
   SiteCurves site;
   const auto w = [](double z) { return std::pow(z / 0.002, 0.8); };
   for (const double z : {0.001, 0.002, 0.004}) site.paths.push_back(lateral_path(z, 50 * w(z)));
-  const CoupledLateral coupled = fit_coupled(site, 0.005, {1e-3, 1e-5, 12, false}, "test");
+  const CoupledLateral coupled = fit_coupled(site, {}, 0.005, {1e-3, 1e-5, 12, false}, "test");
   const runtime::CompiledCurve f(coupled.lateral);
   const runtime::CompiledCurve weight(coupled.coupling.curve,
                                       static_cast<double>(coupled.coupling.base));

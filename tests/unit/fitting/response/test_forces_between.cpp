@@ -53,7 +53,7 @@ Errors errors_of(const SiteCurves& site, const SiteCurves& direct) {
   CurveFitSettings settings;
   settings.relative_tolerance = kTolerance;
   const CurveFit lateral = fit_curve(mean_lateral(lateral_paths(site)), settings, "lateral");
-  const CoupledLateral coupled = fit_coupled(site, normal_reach(site), settings, "coupled");
+  const CoupledLateral coupled = fit_coupled(site, {}, normal_reach(site), settings, "coupled");
   settings.zero_first_slope = true;
   const CurveFit normal = fit_curve(normal_samples(site), settings, "normal");
   Errors errors{error_of(normal.curve, 1, normal_samples(direct)),
