@@ -21,7 +21,8 @@ inline constexpr std::uint32_t kFlatVersion = 1;
 /// These contain entries without which the others must not be used: earlier readers refuse them.
 inline constexpr std::uint32_t kRelaxingFlatVersion = 2;
 inline constexpr std::uint32_t kGrippingFlatVersion = 3;
-inline constexpr std::uint32_t kLatestFlatVersion = 4;
+inline constexpr std::uint32_t kLeaningFlatVersion = 4;
+inline constexpr std::uint32_t kLatestFlatVersion = 5;
 
 /// What an entry is made of; the numbers are those on disk.
 enum class FlatType : std::uint32_t {

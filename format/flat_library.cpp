@@ -172,7 +172,8 @@ void get_responses(const FlatReader& reader, Library& library) {
 
 std::uint32_t version_of(const Library& library) {
   const bool coupled = library.kind == ResponseKind::Coupled, leans = library.leans();
-  if (coupled && leans) return kLatestFlatVersion;
+  if (library.has_soft_axes()) return kLatestFlatVersion;
+  if (coupled && leans) return kLeaningFlatVersion;
   if (coupled || leans) return kGrippingFlatVersion;
   return library.relaxes() ? kRelaxingFlatVersion : kFlatVersion;
 }
@@ -201,7 +202,8 @@ std::string flat_bytes(const Library& library, const std::filesystem::path& targ
     writer.array("/response/relaxation_fraction", relaxation_fractions(library));
     writer.number("/certificate/relaxation_rate", library.certificate.relaxation_rate);
   }
-  if (library.leans()) writer.array("/response/lean", leans(library.responses));
+  if (library.leans()) writer.array(kLeans.name, rows_of(library.responses, kLeans));
+  if (library.has_soft_axes()) writer.array(kSoftAxes.name, rows_of(library.responses, kSoftAxes));
   put_certificate(writer, library.certificate);
   put_provenance(writer, library.provenance);
   return writer.file();
@@ -222,8 +224,8 @@ Library read_flat_library(std::string_view bytes, const std::filesystem::path& f
   checks.numbers("/coupled", coupled, rules::kFlag);
   if (coupled.front() == 1 && reader.version() < kGrippingFlatVersion)
     reader.fail("/coupled", kFormerCoupled);
-  if (coupled.front() == 1 && reader.version() < kLatestFlatVersion && reader.has("/response/lean"))
-    reader.fail("/response/lean", kFormerLean);
+  if (coupled.front() == 1 && reader.version() < kLeaningFlatVersion && reader.has(kLeans.name))
+    reader.fail(kLeans.name, kFormerLean);
   if (coupled.front() == 1) library.kind = ResponseKind::Coupled;
   library.tool_radius = reader.number("/tool_radius");
   library.positions = reader.array<Vec3>("/surface/position");
@@ -238,8 +240,9 @@ Library read_flat_library(std::string_view bytes, const std::filesystem::path& f
     check_relaxation(checks, library, fractions);
     set_relaxation_fractions(fractions, library);
   }
-  if (reader.has("/response/lean"))
-    set_leans(checks, reader.array<std::array<float, 3>>("/response/lean"), library);
+  for (const NodeVector& vector : {kLeans, kSoftAxes})
+    if (reader.has(vector.name))
+      set_rows(checks, reader.array<std::array<float, 3>>(vector.name), vector, library);
   library.provenance = get_provenance(reader);
   check_library(checks, library);
   return library;

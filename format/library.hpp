@@ -29,6 +29,8 @@ inline constexpr int kGrippingLibrarySchema = 6;
 /// The same that are coupled and lean: the lean grows with the contact. Where schema 6 says both,
 /// the lean was that of another model. Refused.
 inline constexpr int kLeaningLibrarySchema = 7;
+/// Coupled responses with soft axes, which lean or not.
+inline constexpr int kSoftLibrarySchema = 8;
 /// Coupled responses with a potential of depth and lateral deflection together, which this runtime
 /// does not render; so are those of schema 5 that say that they are coupled. Refused.
 inline constexpr int kFormerCoupledSchema = 4;
@@ -92,8 +94,8 @@ struct NodeResponse {
   /// press direction. The lateral force against it is the force by which a press leans. In a
   /// coupled library it is w sigma, as the lateral response is w h.
   std::array<float, 3> lean{};
-  /// b, 1, of a coupled library only: the lateral response is softer along b, where its stiffness is
-  /// (1 - |b|^2)^2 of that across b and the press direction. The sign means nothing; zero: the
+  /// b, 1, of a coupled library only: the lateral response is softer along b, where its stiffness
+  /// is (1 - |b|^2)^2 of that across b and the press direction. The sign means nothing; zero: the
   /// response is the same in all lateral directions.
   std::array<float, 3> soft_axis{};
   /// N, largest CurveSample::mesh_error of the curves that the normal response stands for: what the
@@ -192,6 +194,7 @@ struct Library {
 /// The schema of its library.h5.
 inline int schema_of(const Library& library) {
   const bool coupled = library.kind == ResponseKind::Coupled, leans = library.leans();
+  if (library.has_soft_axes()) return kSoftLibrarySchema;
   if (coupled && leans) return kLeaningLibrarySchema;
   if (coupled || leans) return kGrippingLibrarySchema;
   return library.relaxes() ? kRelaxingLibrarySchema : kLibrarySchema;

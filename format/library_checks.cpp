@@ -55,15 +55,27 @@ void check_leans(const Checks& checks, const Library& library) {
   std::size_t row = 0;
   for (const NodeResponse& node : library.responses) {
     if (node.status == ResponseStatus::Hole) continue;
-    const auto& [x, y, z] = node.lean;
-    const double length =
-        std::hypot(static_cast<double>(x), static_cast<double>(y), static_cast<double>(z));
+    const double length = norm(vec3_of(node.lean));
     const bool grows = library.kind == ResponseKind::Coupled && length > 0;
     const double longest = grows ? node.coupling.largest() * length : length;
     if (!(longest <= kMostLean))
-      checks.fail_row("/response/lean", row,
+      checks.fail_row(kLeans.name, row,
                       (grows ? "is, times the largest w, longer than " : "is longer than ") +
                           number_text(kMostLean));
+    ++row;
+  }
+}
+
+/// A length that is NaN fits no limit.
+void check_soft_axes(const Checks& checks, const Library& library) {
+  std::size_t row = 0;
+  for (const NodeResponse& node : library.responses) {
+    if (node.status == ResponseStatus::Hole) continue;
+    const double length = norm(vec3_of(node.soft_axis));
+    if (!(length <= kMostSoftAxis))
+      checks.fail_row(kSoftAxes.name, row, "is longer than " + number_text(kMostSoftAxis));
+    if (length > 0 && library.kind == ResponseKind::Decoupled)
+      checks.fail_row(kSoftAxes.name, row, "is not zero, in a library that is not coupled");
     ++row;
   }
 }
@@ -130,25 +142,27 @@ std::vector<float> coupling_bases(const std::vector<NodeResponse>& responses) {
   return bases;
 }
 
-std::vector<std::array<float, 3>> leans(const std::vector<NodeResponse>& responses) {
+std::vector<std::array<float, 3>> rows_of(const std::vector<NodeResponse>& responses,
+                                          const NodeVector& vector) {
   std::vector<std::array<float, 3>> rows;
   rows.reserve(responses.size());
   for (const NodeResponse& response : responses)
-    if (response.status != ResponseStatus::Hole) rows.push_back(response.lean);
+    if (response.status != ResponseStatus::Hole) rows.push_back(response.*vector.member);
   return rows;
 }
 
-void set_leans(const Checks& checks, const std::vector<std::array<float, 3>>& leans,
-               Library& library) {
+void set_rows(const Checks& checks, const std::vector<std::array<float, 3>>& rows,
+              const NodeVector& vector, Library& library) {
   std::vector<NodeResponse>& responses = library.responses;
   const auto not_a_hole = [](const NodeResponse& r) { return r.status != ResponseStatus::Hole; };
   checks.same_size(
-      "/response/lean", leans.size(),
+      vector.name, rows.size(),
       static_cast<std::size_t>(std::count_if(responses.begin(), responses.end(), not_a_hole)));
-  auto lean = leans.begin();
+  auto row = rows.begin();
   for (NodeResponse& response : responses)
-    if (not_a_hole(response)) response.lean = *lean++;
+    if (not_a_hole(response)) response.*vector.member = *row++;
   check_leans(checks, library);
+  check_soft_axes(checks, library);
 }
 
 std::vector<float> relaxation_fractions(const Library& library) {
@@ -242,6 +256,7 @@ void check_for_writing(const Checks& checks, const Library& library) {
   }
   if (library.relaxes()) check_relaxation(checks, library, relaxation_fractions(library));
   check_leans(checks, library);
+  check_soft_axes(checks, library);
   check_certificate(checks, library);
   check_provenance(checks, library.provenance);
 }

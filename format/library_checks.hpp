@@ -45,11 +45,19 @@ inline constexpr const char* kFormerCoupled =
 inline constexpr const char* kFormerLean =
     "has coupled responses with a lean that an earlier palpate has fitted for another model";
 
-/// The lean of each node with a response.
-std::vector<std::array<float, 3>> leans(const std::vector<NodeResponse>& responses);
+/// A vector of nodes with a response, of which an array of a file has a row for each.
+struct NodeVector {
+  const char* name;  ///< of the array
+  std::array<float, 3> NodeResponse::*member;
+};
+inline constexpr NodeVector kLeans{"/response/lean", &NodeResponse::lean};
+inline constexpr NodeVector kSoftAxes{"/response/soft_axis", &NodeResponse::soft_axis};
+
+std::vector<std::array<float, 3>> rows_of(const std::vector<NodeResponse>& responses,
+                                          const NodeVector& vector);
 /// Checks them, and gives them to the nodes. Coupled responses must have their w already.
-void set_leans(const Checks& checks, const std::vector<std::array<float, 3>>& leans,
-               Library& library);
+void set_rows(const Checks& checks, const std::vector<std::array<float, 3>>& rows,
+              const NodeVector& vector, Library& library);
 
 /// g_i of every node, row by row: V times B numbers, zero at a hole.
 std::vector<float> relaxation_fractions(const Library& library);

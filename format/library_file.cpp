@@ -53,8 +53,8 @@ void read_relaxation(const hdf5::Reader& reader, Library& library) {
   set_relaxation_fractions(fractions, library);
 }
 
-void read_leans(const hdf5::Reader& reader, Library& library) {
-  set_leans(Checks(reader), reader.dataset<std::array<float, 3>>("/response/lean", "1"), library);
+void read_rows(const hdf5::Reader& reader, const NodeVector& vector, Library& library) {
+  set_rows(Checks(reader), reader.dataset<std::array<float, 3>>(vector.name, "1"), vector, library);
 }
 
 void write_surface(hdf5::Writer& writer, const Library& library) {
@@ -110,10 +110,15 @@ void write_responses(hdf5::Writer& writer, const Library& library) {
                    {"1", "Fraction that relaxes with each time, vertex by vertex."});
   }
   if (library.leans())
-    writer.dataset("/response/lean", leans(library.responses),
+    writer.dataset(kLeans.name, rows_of(library.responses, kLeans),
                    {"1",
                     "Lateral deflection of a straight press over its depth, of each vertex with a "
                     "response; of coupled responses at w = 1."});
+  if (library.has_soft_axes())
+    writer.dataset(kSoftAxes.name, rows_of(library.responses, kSoftAxes),
+                   {"1",
+                    "Soft axis b of each vertex with a response: along it the lateral stiffness is "
+                    "(1 - |b|^2)^2 of that across it."});
   if (library.kind == ResponseKind::Decoupled) return;
   writer.dataset("/response/coupling_base", coupling_bases(library.responses),
                  {"1", "w(0) of each vertex; 1 at a hole."});
@@ -217,6 +222,7 @@ void write_library(const std::filesystem::path& path, const Library& library) {
     writer.set_integer("/", "relaxes", library.relaxes() ? 1 : 0);
     writer.set_integer("/", "leans", library.leans() ? 1 : 0);
   }
+  if (schema >= kSoftLibrarySchema) writer.set_integer("/", "soft_axes", 1);
   writer.set_text("/", "name", library.name);
   writer.set_text("/", "tool_shape", library.tool_shape);
   writer.set_real("/", "tool_radius", library.tool_radius);
@@ -233,8 +239,9 @@ Library read_hdf5_library(const std::filesystem::path& path) {
   hdf5::Reader reader(path, kLibraryRemedy);
   Library library;
   const std::int64_t schema = reader.require_artifact(
-      kLibraryArtifact, {kFirstLibrarySchema, kLibrarySchema, kFormerCoupledSchema,
-                         kRelaxingLibrarySchema, kGrippingLibrarySchema, kLeaningLibrarySchema});
+      kLibraryArtifact,
+      {kFirstLibrarySchema, kLibrarySchema, kFormerCoupledSchema, kRelaxingLibrarySchema,
+       kGrippingLibrarySchema, kLeaningLibrarySchema, kSoftLibrarySchema});
   const bool said = schema >= kGrippingLibrarySchema;
   const auto says = [&](const char* name) { return reader.integer("/", name) == 1; };
   const bool relaxes = said ? says("relaxes") : schema == kRelaxingLibrarySchema;
@@ -254,7 +261,8 @@ Library read_hdf5_library(const std::filesystem::path& path) {
   read_flat(reader, "/response/lateral_", library.responses, lateral_of);
   if (library.kind == ResponseKind::Coupled) read_coupling(reader, library.responses);
   if (relaxes) read_relaxation(reader, library);
-  if (said && says("leans")) read_leans(reader, library);
+  if (said && says("leans")) read_rows(reader, kLeans, library);
+  if (schema >= kSoftLibrarySchema) read_rows(reader, kSoftAxes, library);
   library.certificate = read_certificate(reader, certificate_names(schema));
   library.provenance = read_provenance(reader);
   check_library(Checks(reader), library);

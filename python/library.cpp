@@ -112,6 +112,12 @@ void define_responses(py::module_& module) {
           "(3,) float32, without unit: lateral deflection of a straight press over its depth,\n"
           "across the press direction; of coupled responses where w is 1, as it grows with w.\n"
           "Zero where a press does not lean.")
+      .def_property_readonly(
+          "soft_axis",
+          [](const NodeResponse& node) { return py::array_t<float>(3, node.soft_axis.data()); },
+          "(3,) float32, without unit: along b the lateral stiffness is (1 - |b|^2)^2 of that "
+          "across\n"
+          "b. Its sign means nothing. Zero where it is the same in all lateral directions.")
       .def_readonly("normal_error", &NodeResponse::normal_error,
                     "N, largest |fit - sample| of f^z.")
       .def_readonly("lateral_error", &NodeResponse::lateral_error, "N, the same of f^r.");

@@ -145,8 +145,9 @@ void write_paths(Text& text, const FirstSizes& sizes) {
   text.section("[indentation]");
   text.length("depth", sizes.depth, reason_of_depth(sizes));
   text.length("lateral_travel", sizes.lateral_travel, "half the depth");
-  text.key("lateral_depths", fmt::format("[\"{}\"]", mm(sizes.depth / 2)),
-           "one lateral depth a site; more are more accurate");
+  text.key("lateral_depths",
+           fmt::format("[\"{}\", \"{}\"]", mm(0.3 * sizes.depth), mm(0.8 * sizes.depth)),
+           "two tell how the lateral response grows with depth");
   text.section("[solver]");
   if (sizes.is_refined)
     text.key("refine_under_tool", "\"contact\"",

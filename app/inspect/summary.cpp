@@ -262,14 +262,26 @@ Json lean_of(const Library& library) {
   std::vector<double> lengths;
   for (const NodeResponse& node : library.responses) {
     if (node.status == ResponseStatus::Hole) continue;
-    const auto& [x, y, z] = node.lean;
-    const double length =
-        std::hypot(static_cast<double>(x), static_cast<double>(y), static_cast<double>(z));
+    const double length = norm(vec3_of(node.lean));
     const bool grows = library.kind == ResponseKind::Coupled && length > 0;
     lengths.push_back(grows ? node.coupling.largest() * length : length);
   }
   std::sort(lengths.begin(), lengths.end());
   return {{"median", lengths[lengths.size() / 2]}, {"max", lengths.back()}};
+}
+
+/// How much stiffer drags are across the soft axes than along them: median and largest quotient of
+/// the stiffnesses of a vertex with a response.
+Json softness_of(const Library& library) {
+  std::vector<double> quotients;
+  for (const NodeResponse& node : library.responses) {
+    if (node.status == ResponseStatus::Hole) continue;
+    const Vec3 b = vec3_of(node.soft_axis);
+    const double along = 1 - dot(b, b);
+    quotients.push_back(1 / (along * along));
+  }
+  std::sort(quotients.begin(), quotients.end());
+  return {{"median", quotients[quotients.size() / 2]}, {"max", quotients.back()}};
 }
 
 /// What is guaranteed on each device.
@@ -311,6 +323,7 @@ Json summary_of(const Library& library) {
                   {"max_lateral_mesh_error", with_unit(lateral_mesh_error, "N")},
                   {"bounding_box", box_of(library.positions)}};
   if (library.leans()) summary["lean"] = lean_of(library);
+  if (library.has_soft_axes()) summary["stiffness_across_over_along"] = softness_of(library);
   if (library.relaxes()) summary["relaxation"] = relaxation_of(library);
   summary["certificate"] = summary_of(library.certificate);
   return summary;

@@ -277,54 +277,69 @@ void SlideJacobian::add_lean(const SlideCell& cell, Facet& f) const {
   f.lean_s_rate = along_s(f, change) - along_n * f.kappa_s;
 }
 
+/// sum n_l b_l b_l^T, or its derivative along tau, in the frame (N, tau, b).
+struct SlideJacobian::Tensor {
+  Range NN, Nt, Nb, tt, tb, bb;
+
+  std::array<Range, 3> operator*(const std::array<Range, 3>& v) const {
+    return {NN * v[0] + Nt * v[1] + Nb * v[2], Nt * v[0] + tt * v[1] + tb * v[2],
+            Nb * v[0] + tb * v[1] + bb * v[2]};
+  }
+};
+
+/// entry(i, j): that of the axes (N, x, y), which are turned by the middle of the azimuth.
+template <class Entry>
+SlideJacobian::Tensor SlideJacobian::along_tau(const Facet& f, const Entry& entry) {
+  const Range Nx = entry(0, 1), Ny = entry(0, 2), xx = entry(1, 1), xy = entry(1, 2),
+              yy = entry(2, 2);
+  const Range cc = square(f.cosine), ss = square(f.sine), cs = f.cosine * f.sine;
+  return {entry(0, 0),
+          f.cosine * Nx + f.sine * Ny,
+          f.cosine * Ny - f.sine * Nx,
+          cc * xx + ss * yy + 2 * (cs * xy),
+          (cc - ss) * xy + cs * (yy - xx),
+          ss * xx + cc * yy - 2 * (cs * xy)};
+}
+
+/// t, s and n have these components along N, tau and b; t has none along b.
 SlideJacobian::Softening SlideJacobian::softening(const SlideCell& cell, const Facet& f) const {
-  // sum n_l b_l b_l^T and its derivatives in the axes (N, x, y), turned by the middle of the
-  // azimuth
   const Turned b = turned(soft_axis_, f.turn);
   const double c0 = std::cos(f.turn), s0 = std::sin(f.turn);
-  std::array<std::array<Range, 3>, 3> sum, change;
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < 3; ++j) {
-      const auto entry = [&](std::size_t l) { return b[i][l] * b[j][l]; };
-      sum[i][j] = over(cell.part, {Range{entry(0), entry(0)}, Range{entry(1), entry(1)},
-                                   Range{entry(2), entry(2)}});
-      double by_x = 0, by_y = 0;
-      for (std::size_t l = 1; l < 3; ++l) {
-        by_x += (entry(l) - entry(0)) * (c0 * gradient_[l][0] + s0 * gradient_[l][1]);
-        by_y += (entry(l) - entry(0)) * (c0 * gradient_[l][1] - s0 * gradient_[l][0]);
-      }
-      change[i][j] = by_x * f.cosine + by_y * f.sine;
+  const auto product = [&](std::size_t i, std::size_t j, std::size_t l) {
+    return b[i][l] * b[j][l];
+  };
+  const auto sum = [&](std::size_t i, std::size_t j) {
+    const auto at = [&](std::size_t l) { return Range{product(i, j, l), product(i, j, l)}; };
+    return over(cell.part, {at(0), at(1), at(2)});
+  };
+  const auto change = [&](std::size_t i, std::size_t j) {
+    double by_x = 0, by_y = 0;
+    for (std::size_t l = 1; l < 3; ++l) {
+      const double difference = product(i, j, l) - product(i, j, 0);
+      by_x += difference * (c0 * gradient_[l][0] + s0 * gradient_[l][1]);
+      by_y += difference * (c0 * gradient_[l][1] - s0 * gradient_[l][0]);
     }
-  }
-  // t, s and n in these axes
-  const auto in_axes = [&](const Range& N, const Range& tau, const Range& across) {
-    return std::array<Range, 3>{N, tau * f.cosine - across * f.sine,
-                                tau * f.sine + across * f.cosine};
+    return by_x * f.cosine + by_y * f.sine;
   };
-  const auto t = in_axes((-1) * f.n_tau / f.r, f.n_N / f.r, {});
-  const auto s = in_axes((-1) * f.n_b * f.n_N / f.r, (-1) * f.n_b * f.n_tau / f.r, f.r);
-  const auto n = in_axes(f.n_N, f.n_tau, f.n_b);
-  const auto form = [](const std::array<Range, 3>& u, const std::array<std::array<Range, 3>, 3>& x,
-                       const std::array<Range, 3>& v) {
-    Range whole{};
-    for (std::size_t i = 0; i < 3; ++i)
-      for (std::size_t j = 0; j < 3; ++j) whole = whole + u[i] * (x[i][j] * v[j]);
-    return whole;
+  const std::array<Range, 3> t{(-1) * f.n_tau / f.r, f.n_N / f.r, {}};
+  const std::array<Range, 3> s{(-1) * f.n_b * f.n_N / f.r, (-1) * f.n_b * f.n_tau / f.r, f.r};
+  const std::array<Range, 3> n{f.n_N, f.n_tau, f.n_b};
+  const auto dot = [](const std::array<Range, 3>& u, const std::array<Range, 3>& v) {
+    return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
   };
+  const Tensor whole = along_tau(f, sum), rate = along_tau(f, change);
+  const auto of_t = whole * t, of_s = whole * s, rate_of_t = rate * t, rate_of_s = rate * s;
+  const Range n_t = dot(n, of_t), n_s = dot(n, of_s);
   Softening soft;
-  soft.b_tt = form(t, sum, t);
-  soft.b_ts = form(t, sum, s);
-  soft.b_ss = form(s, sum, s);
-  const Range n_t = form(n, sum, t), n_s = form(n, sum, s);
-  soft.db_tt = form(t, change, t) - 2 * f.kappa_t * n_t;
-  soft.db_ts = form(t, change, s) - f.kappa_t * n_s - f.kappa_s * n_t;
-  soft.db_ss = form(s, change, s) - 2 * f.kappa_s * n_s;
-  // |B| is at most that of the longest b_l, and B is not negative
+  soft.db_tt = dot(t, rate_of_t) - 2 * (f.kappa_t * n_t);
+  soft.db_ts = dot(t, rate_of_s) - f.kappa_t * n_s - f.kappa_s * n_t;
+  soft.db_ss = dot(s, rate_of_s) - 2 * (f.kappa_s * n_s);
+  // |B| is at most that of the longest b_l, and B is not negative.
   const double most = element_->most_softening();
-  const Range one{1, 1}, softened{0, most}, turned_away{-0.5 * most, 0.5 * most};
-  soft.b_tt = common(soft.b_tt, softened);
-  soft.b_ss = common(soft.b_ss, softened);
-  soft.b_ts = common(soft.b_ts, turned_away);
+  soft.b_tt = common(dot(t, of_t), {0, most});
+  soft.b_ts = common(dot(t, of_s), {-0.5 * most, 0.5 * most});
+  soft.b_ss = common(dot(s, of_s), {0, most});
+  const Range one{1, 1};
   const Range tt = one - soft.b_tt, ts = (-1) * soft.b_ts, ss = one - soft.b_ss;
   soft.l = common(root(square(tt) + square(ts)), {1 - most, 1});
   soft.e_t = tt / soft.l;

@@ -71,6 +71,8 @@ class SlideJacobian {
   Facet facet(const SlideCell& cell) const;
   void add_lean(const SlideCell& cell, Facet& facet) const;
   Softening softening(const SlideCell& cell, const Facet& facet) const;
+  template <class Entry>
+  static Tensor along_tau(const Facet& facet, const Entry& entry);
   void add_lean(const SlideCell& cell, Grip grip, Terms& terms) const;
   static void add_lean(const Terms& terms, Range& v_n, Range& v_t, Range& v_s);
   Range sheared_depth(const SlideCell& cell) const;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "fitting/response/mean_response.hpp"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -128,14 +129,32 @@ std::array<float, 3> mean_lean(const std::vector<WeightedResponse>& sources) {
   Vec3 mean{};
   double longest = 0;
   for (const WeightedResponse& source : sources) {
-    Vec3 lean;
-    for (std::size_t i = 0; i < 3; ++i) lean[i] = static_cast<double>(source.response->lean[i]);
+    const Vec3 lean = vec3_of(source.response->lean);
     mean = mean + source.weight * lean;
     longest = std::max(longest, norm(lean));
   }
   const double length = norm(mean);
   if (length > longest) mean = (longest / length) * mean;
   return {static_cast<float>(mean[0]), static_cast<float>(mean[1]), static_cast<float>(mean[2])};
+}
+
+/// B of the mean is the mean of the b b^T, of which the longer axis is kept; it is not longer than
+/// the longest b.
+std::array<float, 3> mean_soft_axis(const std::vector<WeightedResponse>& sources) {
+  Eigen::Matrix3d mean = Eigen::Matrix3d::Zero();
+  double longest = 0;
+  for (const WeightedResponse& source : sources) {
+    const Vec3 b = vec3_of(source.response->soft_axis);
+    const Eigen::Map<const Eigen::Vector3d> axis(b.data());
+    mean += source.weight * axis * axis.transpose();
+    longest = std::max(longest, norm(b));
+  }
+  if (longest == 0) return {};
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(mean);
+  // Weights may be negative, and so may be the mean.
+  const double length = std::min(std::sqrt(std::max(0.0, eigen.eigenvalues()[2])), longest);
+  const Eigen::Vector3f b = (length * eigen.eigenvectors().col(2)).cast<float>();
+  return {b[0], b[1], b[2]};
 }
 
 }  // namespace
@@ -155,6 +174,7 @@ NodeResponse mean_response(const std::vector<WeightedResponse>& sources,
     response.coupling = mean_coupling(sources, curve, where);
   response.relaxation = mean_relaxation(sources);
   response.lean = mean_lean(sources);
+  response.soft_axis = mean_soft_axis(sources);
   for (const auto error : {&NodeResponse::normal_mesh_error, &NodeResponse::lateral_mesh_error})
     for (const WeightedResponse& source : sources)
       response.*error = std::fmax(response.*error, source.response->*error);

@@ -18,7 +18,7 @@ import numpy as np
 PROGRAM, SCHEMA = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
 # Sample files and the kind of artifact that each is.
 FILES = {"body": "body", "sprung": "body", "curved": "body", "curves": "curves", "library": "library", "coupled": "library",
-         "relaxing": "library", "leaning": "library", "relaxing_curves": "curves", "recording": "recording"}
+         "relaxing": "library", "leaning": "library", "soft": "library", "relaxing_curves": "curves", "recording": "recording"}
 
 
 def table_rows(page, columns):
@@ -39,7 +39,7 @@ MAY_BE_ABSENT = {"/response/normal_mesh_error", "/response/lateral_mesh_error"}
 
 
 def relaxes(file):
-    """A library of schema 6 or 7 says it; curves have the group whatever their schema."""
+    """A library of schema 6 to 8 says it; curves have the group whatever their schema."""
     if file.attrs["artifact"] == "palpate.curves":
         return "relaxation" in file
     return file.attrs["schema"] == 5 or file.attrs.get("relaxes") == 1
@@ -53,6 +53,10 @@ def leans(file):
     return file.attrs.get("leans") == 1
 
 
+def has_soft_axes(file):
+    return file.attrs.get("soft_axes") == 1
+
+
 def is_in(file, name, meaning):
     if name in MAY_BE_ABSENT:
         return name in file
@@ -62,6 +66,8 @@ def is_in(file, name, meaning):
         return is_coupled(file)
     if meaning.startswith("where responses lean"):
         return leans(file)
+    if meaning.startswith("where responses have soft axes"):
+        return has_soft_axes(file)
     return file.attrs["schema"] >= first_schema(meaning)
 
 
@@ -271,7 +277,7 @@ class FileFormat(unittest.TestCase):
                 np.testing.assert_equal(np.ravel(sample[name][k]), known.numbers(), name)
 
     def test_library_values(self):
-        for name in ("library", "coupled", "relaxing", "leaning"):
+        for name in ("library", "coupled", "relaxing", "leaning", "soft"):
             with self.subTest(name):
                 self.check_library_values(name)
 
@@ -279,10 +285,11 @@ class FileFormat(unittest.TestCase):
         known = Tokens(self.folder / f"{name}.txt")
         with h5py.File(self.folder / f"{name}.h5", "r") as file:
             coupled = known.number() == 1
-            has_lean, has_memory = name == "leaning", "relaxation" in file
-            expected = 7 if has_lean and coupled else 6 if has_lean or coupled else 5 if has_memory else 3
+            has_lean, has_memory, is_soft = name in ("leaning", "soft"), "relaxation" in file, name == "soft"
+            expected = 8 if is_soft else 7 if has_lean and coupled else 6 if has_lean or coupled else 5 if has_memory else 3
             self.assertEqual(file.attrs["schema"], expected)
-            self.assertEqual((relaxes(file), is_coupled(file), leans(file)), (has_memory, coupled, has_lean))
+            self.assertEqual((relaxes(file), is_coupled(file), leans(file), has_soft_axes(file)),
+                             (has_memory, coupled, has_lean, is_soft))
             self.assertEqual(file.attrs["name"], known.text())
             self.assertEqual(file.attrs["tool_shape"], known.text())
             self.assertEqual(file.attrs["tool_radius"], known.number())
@@ -296,7 +303,7 @@ class FileFormat(unittest.TestCase):
                     values = [value for (value,) in known.table()]
                     self.assertEqual(response[f"{which}_{what}"][rows].tolist() if stored else [], values)
 
-            leans_in_order = iter(response.get("lean", ()))
+            in_order = {vector: iter(response.get(vector, ())) for vector in ("lean", "soft_axis")}
             for i in range(len(response["status"])):
                 self.assertEqual(response["status"][i], known.number())
                 check_curve("normal", i, True)
@@ -313,10 +320,11 @@ class FileFormat(unittest.TestCase):
                     stored = response["status"][i] != 2
                     self.assertEqual(response["relaxation_fraction"][row].tolist(),
                                      [known.number() for _ in range(times)] if stored else [0] * times)
-                lean = [known.number() for _ in range(3)]
-                if has_lean:
-                    row = next(leans_in_order).tolist() if response["status"][i] != 2 else [0, 0, 0]
-                    self.assertEqual(row, lean)
+                for vector, stored in (("lean", has_lean), ("soft_axis", is_soft)):
+                    values = [known.number() for _ in range(3)]
+                    if stored:
+                        row = next(in_order[vector]).tolist() if response["status"][i] != 2 else [0, 0, 0]
+                        self.assertEqual(row, values)
             if has_memory:
                 self.assertEqual(file["relaxation/time"][()].tolist(), [known.number() for _ in range(2)])
             certificate = file["certificate"]

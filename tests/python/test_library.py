@@ -82,7 +82,7 @@ class Library(unittest.TestCase):
         self.assertIn("no certificate", repr(bare))
 
     def test_an_hdf5_library_is_what_h5py_reads(self):
-        for name in ("ball", "coupled", "relaxing", "leaning"):
+        for name in ("ball", "coupled", "relaxing", "leaning", "soft"):
             library = palpate.Library(self.root / f"{name}.h5")
             with h5py.File(self.root / f"{name}.h5") as file:
                 self.assertTrue(np.array_equal(library.vertices, file["/surface/position"]))
@@ -91,9 +91,10 @@ class Library(unittest.TestCase):
                 certificate = file["certificate"].attrs
                 for key in ("stick", "slip", "friction", "min_lipschitz_bound"):
                     self.assertEqual(getattr(library.certificate, key), certificate[key], key)
-                leans = file["response/lean"][5] if name == "leaning" else np.zeros(3)
-            self.assertEqual(library.response(5).lean.tolist(), leans.tolist())
-            self.assertEqual(library.coupled, name in ("coupled", "leaning"))
+                for vector, stored in (("lean", name in ("leaning", "soft")), ("soft_axis", name == "soft")):
+                    row = file[f"response/{vector}"][5] if stored else np.zeros(3)
+                    self.assertEqual(getattr(library.response(5), vector).tolist(), row.tolist())
+            self.assertEqual(library.coupled, name in ("coupled", "leaning", "soft"))
             self.assertEqual(len(library.response(5).coupling) > 0, library.coupled)
             relaxing = name == "relaxing"
             self.assertEqual(list(library.relaxation_times), [0.02, 0.5] if relaxing else [])

@@ -64,7 +64,7 @@ class Forces(Bodies):
         positions = rounds(np.zeros(3), 0.03, 2e-3, 4000)
         velocities = np.gradient(positions, 1e-3, axis=0)
         times = np.tile([1e-3, 5e-4], 2000)
-        for name in ("ball", "coupled", "leaning", "relaxing"):
+        for name in ("ball", "coupled", "leaning", "soft", "relaxing"):
             for friction in (-1.0, 0.1):
                 expected = c_interface.trajectory(LIBPALPATE, self.root / f"{name}.h5", positions, velocities, times,
                                                   friction)

@@ -42,6 +42,8 @@ int main(int argc, char** argv) {
   write_library(folder / "ball.h5", certified(ball));
   write_library(folder / "coupled.h5", certified(test::coupled(ball)));
   write_library(folder / "leaning.h5", certified(test::leaning(test::coupled(ball), 0.2)));
+  write_library(folder / "soft.h5",
+                certified(test::soft_axes(test::leaning(test::coupled(ball), 0.15), 0.4)));
   write_library(folder / "relaxing.h5", certified(test::relaxing(ball, {0.02, 0.5}, false)));
   Library hole = plate;
   hole.responses[0] = {};

@@ -354,6 +354,20 @@ Library leaning_library(unsigned seed) {
   return leaning;
 }
 
+Library soft_library(unsigned seed) {
+  Random random(seed + 4000);
+  Library soft = seed % 3 == 0   ? leaning_library(seed)  // and relaxing or not
+                 : seed % 3 == 1 ? coupled_library(seed)
+                                 : relaxing_library(2 * seed + 1);
+  if (soft.kind == ResponseKind::Decoupled) soft = coupled_library(seed);
+  for (NodeResponse& node : soft.responses) {
+    if (node.status == ResponseStatus::Hole) continue;
+    for (float& component : node.soft_axis)
+      component = static_cast<float>(random.between(-0.3, 0.3));
+  }
+  return soft;
+}
+
 Recording recording(unsigned seed) {
   Random random(seed);
   Recording recording;
@@ -437,6 +451,7 @@ std::string dump(const Library& library) {
     out << static_cast<double>(r.coupling.base) << r.coupling.curve;
     for (const float fraction : r.relaxation) out << static_cast<double>(fraction);
     for (const float component : r.lean) out << static_cast<double>(component);
+    for (const float component : r.soft_axis) out << static_cast<double>(component);
   }
   for (const double time : library.relaxation_times) out << time;
   const Certificate& c = library.certificate;

@@ -27,6 +27,8 @@ Library coupled_library(unsigned seed);
 Library relaxing_library(unsigned seed);
 /// Decoupled, coupled or relaxing, by the seed.
 Library leaning_library(unsigned seed);
+/// Coupled responses with soft axes, which lean, relax, or do neither in turn.
+Library soft_library(unsigned seed);
 std::string dump(const Library& library);
 std::string dump(const Recording& recording);
 

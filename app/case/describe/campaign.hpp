@@ -73,7 +73,7 @@ void describe_indentation(V& v, fem::IndentationSettings& s) {
       s.drag_across,
       {"drag_across",
        "with a single azimuth, a shorter lateral path across it at the middle lateral depth too: "
-       "by it `fit` knows how the response leans"});
+       "by it `fit` knows how the response leans, and in which direction it is softer"});
   v.number(s.force_tolerance, {"force_tolerance",
                                "relative tolerance of the tool force at equilibrium",
                                kOptional,

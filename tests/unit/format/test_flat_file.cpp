@@ -93,10 +93,10 @@ TEST(FlatFile, RefusesWhatIsNotOneOrOfALaterVersion) {
   EXPECT_THAT(problem_of([] { reader_of(sample_file().substr(0, 20)); }),
               HasSubstr("is not a flat library"));
   try {
-    reader_of(resealed(sample_file(), 8, 5, 4));
+    reader_of(resealed(sample_file(), 8, 6, 4));
     FAIL();
   } catch (const Error& error) {
-    EXPECT_THAT(error.problem(), HasSubstr("version 5"));
+    EXPECT_THAT(error.problem(), HasSubstr("version 6"));
     EXPECT_THAT(error.remedy(), HasSubstr("update palpate"));
   }
 }

@@ -25,7 +25,7 @@ TEST(FlatLibrary, IsTheSameLibraryAsTheHdf5File) {
   for (unsigned seed = 0; seed < 5; ++seed) {
     for (const Library& library :
          {samples::library(seed), samples::coupled_library(seed), samples::relaxing_library(seed),
-          samples::leaning_library(seed)}) {
+          samples::leaning_library(seed), samples::soft_library(seed)}) {
       write_library(folder / "library.h5", library);
       write_flat_library(folder / "library.plib", library);
       EXPECT_EQ(dump(read_library(folder / "library.plib")), dump(library));
@@ -100,6 +100,11 @@ TEST(FlatLibrary, IsCheckedAsTheHdf5FileIs) {
   expect_refused(relaxing, "/response/relaxation_fraction", 4, &negative, 4);
   expect_refused(samples::leaning_library(1), "/response/lean", 4, &not_a_number, 4);
   expect_refused(samples::leaning_library(1), "/response/lean", 8, &negative, 4);  // too long
+  expect_refused(samples::soft_library(1), "/response/soft_axis", 4, &not_a_number, 4);
+  expect_refused(samples::soft_library(1), "/response/soft_axis", 8, &negative, 4);  // too long
+  Library decoupled = samples::soft_library(1);
+  decoupled.kind = ResponseKind::Decoupled;
+  EXPECT_THROW(flat_bytes(decoupled, "a.plib"), Error);
 }
 
 /// A reader must not take the curves without what it does not know of them.
@@ -114,6 +119,7 @@ TEST(FlatLibrary, OfTissueThatRelaxesOrLeansOrIsCoupledIsOfALaterVersion) {
   for (const unsigned seed : {0U, 1U, 2U}) {
     const Library leaning = samples::leaning_library(seed);
     EXPECT_EQ(version(leaning), leaning.kind == ResponseKind::Coupled ? 4 : 3);
+    EXPECT_EQ(version(samples::soft_library(seed)), 5);
   }
 }
 

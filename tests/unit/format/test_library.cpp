@@ -69,7 +69,7 @@ std::vector<Case> schema_cases() {
        "has coupled responses that an earlier palpate has fitted"},
       {"LibraryOfSchemaTwo", kind,
        edit([](Hdf5Editor& e) { e.set_attribute("/", "schema", 2, H5T_NATIVE_INT); }), ":/",
-       "has schema 2, this palpate reads 1, 3, 4, 5, 6 and 7"},
+       "has schema 2, this palpate reads 1, 3, 4, 5, 6, 7 and 8"},
   };
 }
 

@@ -34,7 +34,7 @@ std::vector<Case> common_cases() {
         edit([](Hdf5Editor& e) { e.set_attribute("/", "schema", 99, H5T_NATIVE_INT); }), ":/",
         kind == Kind::Body ? "has schema 99, this palpate reads 1, 2, 3 and 4; update palpate"
         : kind == Kind::Library
-            ? "has schema 99, this palpate reads 1, 3, 4, 5, 6 and 7; update palpate"
+            ? "has schema 99, this palpate reads 1, 3, 4, 5, 6, 7 and 8; update palpate"
             : "has schema 99, this palpate reads 2; update palpate");
     add(name + "OfEarlierSchema", kind,
         edit([](Hdf5Editor& e) { e.set_attribute("/", "schema", 0, H5T_NATIVE_INT); }), ":/",

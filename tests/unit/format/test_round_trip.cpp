@@ -163,6 +163,10 @@ TEST(RoundTrip, Library) {
     const Library leaning = samples::leaning_library(seed);
     write_library(folder / "leaning.h5", leaning);
     EXPECT_EQ(dump(read_library(folder / "leaning.h5")), dump(leaning));
+    const Library soft = samples::soft_library(seed);
+    write_library(folder / "soft.h5", soft);
+    EXPECT_EQ(dump(read_library(folder / "soft.h5")), dump(soft));
+    EXPECT_TRUE(soft.has_soft_axes());
   }
 }
 

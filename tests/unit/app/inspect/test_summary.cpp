@@ -55,6 +55,16 @@ TEST(Inspect, StatesTheAccuracyOfALibraryBesideItsGuarantee) {
                                   "[0-9.]+ % .mesh. . [0-9.]+ % .fit. of the converged force"));
 }
 
+TEST(Inspect, StatesHowMuchStifferDragsAreAcrossTheSoftAxes) {
+  Library library = samples::coupled_library(4);
+  EXPECT_FALSE(summary_of(library).contains("stiffness_across_over_along"));
+  for (NodeResponse& node : library.responses) node.soft_axis = {0.3F, -0.4F, 0};
+  library.responses.front().status = ResponseStatus::Hole;
+  const auto quotient = summary_of(library)["stiffness_across_over_along"];
+  EXPECT_NEAR(quotient["median"], 1 / (0.75 * 0.75), 1e-6);
+  EXPECT_NEAR(quotient["max"], 1 / (0.75 * 0.75), 1e-6);
+}
+
 TEST(Inspect, CallsAnInfiniteBoundNoBound) {
   Library library = samples::library(4);
   library.certificate.slip = library.certificate.min_lipschitz_bound = kInfinity;

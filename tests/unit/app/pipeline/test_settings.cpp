@@ -89,7 +89,7 @@ class SettingsText {
     add(campaign_settings(space));
     const fitting::FitSettings fit = fit_settings(space);
     add(fit.relative_tolerance, fit.absolute_tolerance, fit.max_knots, fit.fill_holes,
-        fit.interpolate, fit.between_nodes, fit.lean, static_cast<int>(fit.kind));
+        fit.interpolate, fit.between_nodes, fit.lean, fit.soft_axes, static_cast<int>(fit.kind));
     add(c.sampling.initial_spacing, c.sampling.tolerance, c.sampling.hold_out_points,
         c.sampling.max_sites, static_cast<int>(c.sampling.method));
     add(c.certify.friction, c.certify.devices.size());

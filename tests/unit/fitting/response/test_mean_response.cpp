@@ -53,6 +53,28 @@ TEST(MeanResponse, IsMonotoneForNegativeWeights) {
   for (const float slope : mean.lateral.slope) EXPECT_GE(slope, 0.0F);
 }
 
+/// The sign of a soft axis means nothing, and neither does that of the mean.
+TEST(MeanResponse, HasTheLongerAxisOfTheMeanOfSoftAxes) {
+  NodeResponse one = node_response(linear_curve(100), linear_curve(40)), other = one;
+  const auto mean_of = [&](double first, double second) {
+    const Vec3 b = vec3_of(mean_response({{&one, first}, {&other, second}}, {}, "test").soft_axis);
+    return std::array<double, 3>{b[0] * b[0], b[1] * b[1], b[0] * b[1]};
+  };
+  EXPECT_EQ(mean_of(0.5, 0.5), (std::array<double, 3>{}));
+  one.soft_axis = {0.3F, 0.1F, 0};
+  other.soft_axis = {-0.3F, -0.1F, 0};
+  for (const double value : {mean_of(0.5, 0.5)[0], mean_of(0.2, 0.8)[0]})
+    EXPECT_NEAR(value, 0.09, 1e-6);
+  EXPECT_NEAR(mean_of(0.5, 0.5)[2], 0.03, 1e-6);
+  // Axes across each other: the mean tensor is diagonal, with 0.7 * 0.16 and 0.3 * 0.04.
+  one.soft_axis = {0.4F, 0, 0};
+  other.soft_axis = {0, 0.2F, 0};
+  EXPECT_NEAR(mean_of(0.7, 0.3)[0], 0.7 * 0.16, 1e-6);
+  EXPECT_NEAR(mean_of(0.7, 0.3)[1], 0, 1e-6);
+  // A mean with a negative weight is no longer than the longest.
+  EXPECT_NEAR(mean_of(1.5, -0.5)[0], 0.16, 1e-6);
+}
+
 TEST(MeanResponse, LargestDifferenceOfLinearResponsesIsAtTheEnd) {
   const ResponseDifference difference =
       largest_difference(node_response(linear_curve(100), linear_curve(40)),
