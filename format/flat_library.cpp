@@ -240,6 +240,8 @@ Library read_flat_library(std::string_view bytes, const std::filesystem::path& f
     check_relaxation(checks, library, fractions);
     set_relaxation_fractions(fractions, library);
   }
+  if (reader.has(kSoftAxes.name) && library.kind == ResponseKind::Decoupled)
+    reader.fail(kSoftAxes.name, kSoftAndDecoupled);
   for (const NodeVector& vector : {kLeans, kSoftAxes})
     if (reader.has(vector.name))
       set_rows(checks, reader.array<std::array<float, 3>>(vector.name), vector, library);

@@ -25,7 +25,7 @@ bool Library::leans() const {
 
 bool Library::has_soft_axes() const {
   return std::any_of(responses.begin(), responses.end(), [](const NodeResponse& node) {
-    return node.soft_axis != std::array<float, 3>{};
+    return node.status != ResponseStatus::Hole && node.soft_axis != std::array<float, 3>{};
   });
 }
 

@@ -173,7 +173,7 @@ inline RenderedForce rendered_force(const Certificate& certificate, double lipsc
 struct Library {
   bool relaxes() const { return !relaxation_times.empty(); }
   bool leans() const;          ///< whether a node does
-  bool has_soft_axes() const;  ///< whether a node has one
+  bool has_soft_axes() const;  ///< whether a node with a response has one
 
   ResponseKind kind = ResponseKind::Decoupled;
   std::string name;

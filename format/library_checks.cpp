@@ -75,7 +75,7 @@ void check_soft_axes(const Checks& checks, const Library& library) {
     if (!(length <= kMostSoftAxis))
       checks.fail_row(kSoftAxes.name, row, "is longer than " + number_text(kMostSoftAxis));
     if (length > 0 && library.kind == ResponseKind::Decoupled)
-      checks.fail_row(kSoftAxes.name, row, "is not zero, in a library that is not coupled");
+      checks.fail(kSoftAxes.name, kSoftAndDecoupled);
     ++row;
   }
 }

@@ -53,6 +53,10 @@ struct NodeVector {
 inline constexpr NodeVector kLeans{"/response/lean", &NodeResponse::lean};
 inline constexpr NodeVector kSoftAxes{"/response/soft_axis", &NodeResponse::soft_axis};
 
+/// What is wrong with soft axes of responses that are not coupled.
+inline constexpr const char* kSoftAndDecoupled =
+    "is of decoupled responses, which have no soft axes";
+
 std::vector<std::array<float, 3>> rows_of(const std::vector<NodeResponse>& responses,
                                           const NodeVector& vector);
 /// Checks them, and gives them to the nodes. Coupled responses must have their w already.

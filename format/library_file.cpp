@@ -57,6 +57,12 @@ void read_rows(const hdf5::Reader& reader, const NodeVector& vector, Library& li
   set_rows(Checks(reader), reader.dataset<std::array<float, 3>>(vector.name, "1"), vector, library);
 }
 
+void read_soft_axes(const hdf5::Reader& reader, Library& library) {
+  if (reader.integer("/", "soft_axes") != 1) reader.fail("/@soft_axes", "is not 1");
+  if (library.kind == ResponseKind::Decoupled) reader.fail(kSoftAxes.name, kSoftAndDecoupled);
+  read_rows(reader, kSoftAxes, library);
+}
+
 void write_surface(hdf5::Writer& writer, const Library& library) {
   writer.group("/surface", "The triangulation that carries the responses.");
   writer.dataset("/surface/position", library.positions, {"m", "Position of each vertex."});
@@ -262,7 +268,7 @@ Library read_hdf5_library(const std::filesystem::path& path) {
   if (library.kind == ResponseKind::Coupled) read_coupling(reader, library.responses);
   if (relaxes) read_relaxation(reader, library);
   if (said && says("leans")) read_rows(reader, kLeans, library);
-  if (schema >= kSoftLibrarySchema) read_rows(reader, kSoftAxes, library);
+  if (schema >= kSoftLibrarySchema) read_soft_axes(reader, library);
   library.certificate = read_certificate(reader, certificate_names(schema));
   library.provenance = read_provenance(reader);
   check_library(Checks(reader), library);

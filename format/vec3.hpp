@@ -34,7 +34,7 @@ constexpr Vec3 cross(const Vec3& a, const Vec3& b) {
 inline double norm(const Vec3& a) {
   return std::sqrt(dot(a, a));
 }
-/// Of numbers that are stored in single precision.
+/// A vector that is stored in single precision.
 constexpr Vec3 vec3_of(const std::array<float, 3>& a) {
   return {static_cast<double>(a[0]), static_cast<double>(a[1]), static_cast<double>(a[2])};
 }

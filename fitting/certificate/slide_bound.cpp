@@ -310,12 +310,18 @@ double slipping_norm(double lean, double along, double mixed, double across) {
   return kRoundingFactor * std::sqrt(largest);
 }
 
-/// The same where responses have soft axes: S t and S s are not across each other, and not longer
-/// than 1.
-double slipping_norm(const ContactElement& element, double lean, double along, double mixed,
+/// The same where responses may have soft axes: S t and S s are no longer than 1, and S t has at
+/// most (1 - l^2)/(2 l) along S s, where l is the least eigenvalue of S. What it has along S s adds
+/// to the norm of the rest; or the blocks bound it.
+double slipping_norm(const ContactElement& element, const Range& z, double along, double mixed,
                      double across) {
-  if (element.has_soft_axes()) return kRoundingFactor * leaned_norm(lean, along, mixed, across);
-  return slipping_norm(lean, along, mixed, across);
+  const double lean = element.most_lean(z), rest = slipping_norm(lean, along, mixed, across);
+  if (!element.has_soft_axes()) return rest;
+  const double least = 1 - element.most_softening();
+  const double aside = (1 - least * least) / (2 * least);
+  const double without_axes = std::max(rest, across);
+  return kRoundingFactor * std::min(leaned_norm(lean, along, mixed, across),
+                                    without_axes + element.stretch(z) * mixed * aside);
 }
 
 /// sup w' h within friction: w h <= mu g there.
@@ -353,7 +359,7 @@ double cell_min_bound(const ContactElement& element, const Range& z) {
   const double g_z = element.normal.slope(z).high, lean = element.most_lean(z);
   const double by_depth = g_z + lean_growth(element, z), mixed = element.friction * g_z;
   const double across = lean > 0 || element.has_soft_axes() ? lateral_within(element, z) : 0;
-  return std::max(cell_stick(element, z), slipping_norm(element, lean, by_depth, mixed, across));
+  return std::max(cell_stick(element, z), slipping_norm(element, z, by_depth, mixed, across));
 }
 
 /// Below every knot the normal responses are linear. If w is constant there, nothing else depends
@@ -365,7 +371,7 @@ double min_bound_beyond(const ContactElement& element, double depth) {
   const double g_z = element.normal.slope(beyond).high, lean = element.most_lean(beyond);
   if (lean > 0 || element.has_soft_axes())
     return kRoundingFactor *
-           std::max(slipping_norm(element, lean, g_z, element.friction * g_z, lateral),
+           std::max(slipping_norm(element, beyond, g_z, element.friction * g_z, lateral),
                     leaned_norm(lean, g_z, 0, lateral));
   return kRoundingFactor * std::max(std::hypot(1.0, element.friction) * g_z, lateral);
 }

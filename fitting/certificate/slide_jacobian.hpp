@@ -52,7 +52,8 @@ class SlideJacobian {
   struct AtVertex;
   struct Terms;  // of (8) and (9)
   struct Axes;
-  struct Softening;                                     // S and its derivative
+  struct Softening;  // S and its derivative
+  struct Tensor;
   using Turned = std::array<std::array<double, 3>, 3>;  ///< components of the vectors of vertices
   using Weights = std::array<Range, 3>;                 ///< of the vertices
 

@@ -46,6 +46,31 @@ double left_out(const Deformation& d, std::size_t kept) {
   return std::sqrt(d.rms_left_out * d.rms_left_out + mean);
 }
 
+/// Of each site the rows of one of its lateral depths.
+template <class T>
+std::vector<T> at_lateral_depth(const std::vector<T>& all, std::size_t sites, std::size_t depths,
+                                std::size_t kept) {
+  const std::size_t row = all.size() / (sites * depths);
+  std::vector<T> out;
+  for (std::size_t site = 0; site < sites; ++site) {
+    const auto begin = all.begin() + static_cast<std::ptrdiff_t>((site * depths + kept) * row);
+    out.insert(out.end(), begin, begin + static_cast<std::ptrdiff_t>(row));
+  }
+  return out;
+}
+
+/// Keeps the middle one of the lateral depths, the deeper of two.
+void keep_one_lateral_depth(Deformation& d) {
+  const std::size_t depths = d.lateral_depths.size(), kept = depths / 2, sites = d.sites.size();
+  if (depths < 2) return;
+  d.lateral_depths = {d.lateral_depths[kept]};
+  const auto keep = [&](auto& all) { all = at_lateral_depth(all, sites, depths, kept); };
+  keep(d.lateral_local);
+  keep(d.lateral_modes);
+  keep(d.anisotropic);
+  keep(d.anisotropic_scale);
+}
+
 }  // namespace
 
 Deformation coarsened(const Deformation& fine, const std::vector<Triangle>& triangles,
@@ -66,6 +91,7 @@ Deformation coarsened(const Deformation& fine, const std::vector<Triangle>& tria
   d.mode_scale.resize(kept);
   d.press_modes = leading(fine.press_modes, all, kept);
   d.lateral_modes = leading(fine.lateral_modes, all, kept);
+  keep_one_lateral_depth(d);
   return d;
 }
 

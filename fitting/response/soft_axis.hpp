@@ -12,8 +12,8 @@
 
 namespace palpate::fitting {
 
-/// Longest soft axis that is fitted: friction is up to 1 - |b|^2 smaller along it.
-inline constexpr double kMostFittedSoftAxis = 0.6;
+/// Longest soft axis that is fitted: along it friction is |b|^2 smaller.
+inline constexpr double kMostFittedSoftAxis = 0.45;
 /// A shorter soft axis is none: stiffnesses a hundredth apart are not felt.
 inline constexpr double kLeastSoftAxis = 0.07;
 

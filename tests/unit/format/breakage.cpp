@@ -26,6 +26,8 @@ void write_sample(Kind kind, const Path& path) {
       return write_library(path, coupled_library(1));
     case Kind::RelaxingLibrary:
       return write_library(path, relaxing_library(1));
+    case Kind::SoftLibrary:
+      return write_library(path, soft_library(1));
     case Kind::Recording:
       return write_recording(path, recording(1));
   }
@@ -53,6 +55,7 @@ void read_sample(Kind kind, const Path& path) {
     case Kind::Library:
     case Kind::CoupledLibrary:
     case Kind::RelaxingLibrary:
+    case Kind::SoftLibrary:
       static_cast<void>(read_library(path));
       return;
     case Kind::Recording:

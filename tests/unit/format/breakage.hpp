@@ -29,6 +29,7 @@ enum class Kind {
   Library,
   CoupledLibrary,
   RelaxingLibrary,
+  SoftLibrary,
   Recording
 };
 

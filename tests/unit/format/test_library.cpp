@@ -54,6 +54,29 @@ std::vector<Case> relaxation_cases() {
   };
 }
 
+std::vector<Case> soft_axis_cases() {
+  const auto soft = Kind::SoftLibrary;
+  const auto says = [](const char* name, int value) {
+    return edit([=](Hdf5Editor& e) { e.set_attribute("/", name, value, H5T_NATIVE_INT); });
+  };
+  return {
+      {"LibrarySoftAxisNotANumber", soft, poke("/response/soft_axis", 4, kNaN),
+       "/response/soft_axis[1]", "is longer than 0.707"},
+      {"LibrarySoftAxisInfinite", soft, poke("/response/soft_axis", 0, -kInfinity),
+       "/response/soft_axis[0]", "is longer than 0.707"},
+      {"LibrarySoftAxisTooLong", soft, poke("/response/soft_axis", 3, 0.7072),
+       "/response/soft_axis[1]", "is longer than 0.707"},
+      {"LibrarySoftAxesTooFew", soft, replace("/response/soft_axis", {2, 3}, H5T_IEEE_F32LE),
+       "/response/soft_axis", "has 2 rows"},
+      {"LibrarySoftAxesMissing", soft, remove("/response/soft_axis"), "/response/soft_axis",
+       "is missing"},
+      {"LibraryThatSaysItHasNoSoftAxes", soft, says("soft_axes", 0), "/@soft_axes", "is not 1"},
+      {"LibraryThatDoesNotSaySoftAxes", Kind::CoupledLibrary, says("schema", 8), ":/", "soft_axes"},
+      {"LibrarySoftAxesOfDecoupledResponses", soft, says("coupled", 0), "/response/soft_axis",
+       "is of decoupled responses, which have no soft axes"},
+  };
+}
+
 std::vector<Case> schema_cases() {
   const auto kind = Kind::Library;
   return {
@@ -163,6 +186,7 @@ std::vector<Case> status_and_certificate_cases() {
 }
 
 INSTANTIATE_TEST_SUITE_P(Relaxation, Rejection, ::testing::ValuesIn(relaxation_cases()), name_of);
+INSTANTIATE_TEST_SUITE_P(SoftAxes, Rejection, ::testing::ValuesIn(soft_axis_cases()), name_of);
 INSTANTIATE_TEST_SUITE_P(Schemas, Rejection, ::testing::ValuesIn(schema_cases()), name_of);
 INSTANTIATE_TEST_SUITE_P(SurfacesAndResponses, Rejection,
                          testing::ValuesIn(surface_and_response_cases()), name_of);

@@ -84,5 +84,35 @@ TEST(Coarsened, KeepsTheLeadingModesAndSaysWhatItLeavesOut) {
   }
 }
 
+/// The same fields at a second, lesser depth, times a factor.
+Deformation with_a_lesser_depth(const Deformation& one, float factor) {
+  Deformation two = one;
+  two.lateral_depths = {0.5 * one.lateral_depths.front(), one.lateral_depths.front()};
+  const auto doubled = [&](const auto& all, auto& out, auto times) {
+    const std::size_t row = all.size() / one.sites.size();
+    out.clear();
+    for (std::size_t site = 0; site < one.sites.size(); ++site)
+      for (const bool lesser : {true, false})
+        for (std::size_t i = site * row; i < (site + 1) * row; ++i)
+          out.push_back(lesser ? times(all[i]) : all[i]);
+  };
+  const auto scaled = [&](float value) { return factor * value; };
+  doubled(one.lateral_local, two.lateral_local, scaled);
+  doubled(one.lateral_modes, two.lateral_modes, scaled);
+  doubled(one.anisotropic_scale, two.anisotropic_scale, scaled);
+  doubled(one.anisotropic, two.anisotropic, [](std::int16_t value) { return value; });
+  return two;
+}
+
+TEST(Coarsened, KeepsTheDeeperOfTwoLateralDepths) {
+  const PressedPlate plate;
+  const Deformation one = compressed(plate, wavy);
+  ASSERT_EQ(one.lateral_depths.size(), 1U);
+  const Deformation two = with_a_lesser_depth(one, 0.3F);
+  const auto kept = coarsened(two, plate.library.triangles, 512);
+  EXPECT_EQ(kept.lateral_depths, one.lateral_depths);
+  EXPECT_LT(distance(shown(plate, kept), shown(plate, one), one.vertex_of), 1e-12);
+}
+
 }  // namespace
 }  // namespace palpate::fitting
