@@ -46,7 +46,7 @@ double left_out(const Deformation& d, std::size_t kept) {
   return std::sqrt(d.rms_left_out * d.rms_left_out + mean);
 }
 
-/// Of each site the rows of one of its lateral depths.
+/// The rows of one lateral depth of each site.
 template <class T>
 std::vector<T> at_lateral_depth(const std::vector<T>& all, std::size_t sites, std::size_t depths,
                                 std::size_t kept) {
