@@ -230,6 +230,7 @@ class Pipeline(unittest.TestCase):
                     self.assertEqual(values, file[name][()].ravel().tolist(), name)
                     compared += 1
         self.assertGreater(compared, 15)
+        self.assertIn("/response/soft_axis", flat)
         flat_text, text = (self.run_ok("inspect", self.out / name)
                            for name in ("library.plib", "library.h5"))
         self.assertEqual(flat_text.replace("library.plib", "library.h5"), text)
@@ -395,7 +396,7 @@ class Pipeline(unittest.TestCase):
 def flat_entries(data):
     """The numbers of each entry of a flat library, read as format/schema/flat.md says."""
     magic, version, count, size = struct.unpack_from("<8sIIQ", data)
-    assert (magic, version) == (b"\x89PLP\r\n\x1a\n", 4)
+    assert (magic, version) == (b"\x89PLP\r\n\x1a\n", 5)
     assert data[size:] == b"\npalpate-sha256:%s\n" % hashlib.sha256(data[:size]).hexdigest().encode()
     entries = {}
     for i in range(count):

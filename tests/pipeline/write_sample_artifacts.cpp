@@ -24,7 +24,7 @@ int main(int argc, char** argv) {
     palpate::write_library(folder / "coupled.h5", samples::coupled_library(1));
     palpate::write_library(folder / "relaxing.h5", samples::relaxing_library(1));
     palpate::write_library(folder / "leaning.h5", samples::leaning_library(0));
-    palpate::write_library(folder / "soft.h5", samples::soft_library(0));
+    palpate::write_library(folder / "soft.h5", samples::soft_library(3));
     palpate::write_curves(folder / "relaxing_curves.h5", samples::relaxing_curves(1));
     palpate::write_recording(folder / "recording.h5", samples::recording(1));
     palpate::write_file_crash_safely(folder / "body.txt", samples::dump(samples::body(1)));
@@ -38,7 +38,7 @@ int main(int argc, char** argv) {
                                      samples::dump(samples::relaxing_library(1)));
     palpate::write_file_crash_safely(folder / "leaning.txt",
                                      samples::dump(samples::leaning_library(0)));
-    palpate::write_file_crash_safely(folder / "soft.txt", samples::dump(samples::soft_library(0)));
+    palpate::write_file_crash_safely(folder / "soft.txt", samples::dump(samples::soft_library(3)));
     palpate::write_file_crash_safely(folder / "recording.txt",
                                      samples::dump(samples::recording(1)));
   } catch (const std::exception& error) {
