@@ -78,8 +78,10 @@ class Challenger {
     const double limit = model.slip_limit(pressed, library_.certificate.friction);
     if (!std::isfinite(limit)) return std::nullopt;
     const double rho = mode == Mode::Sticking ? attempt.lateral * limit : limit;
-    const Vec3 x = model.contact_point() + (z + d0) * n + model.shear(pressed) +
-                   rho * sideways(n, attempt.azimuth);
+    const Vec3 side = sideways(n, attempt.azimuth);
+    const double stretch = norm(model.soft_axes().stretch(side));
+    const Vec3 x =
+        model.contact_point() + (z + d0) * n + model.shear(pressed) + rho / stretch * side;
     const double step = step_length();
     const Vec3 dx = (step / norm(attempt.move)) * attempt.move;
     const Vec3 before = model.respond(model.deflection(x)).force;
@@ -133,7 +135,8 @@ class Challenger {
         if (norm(model.contact_point() - start) < 1e-3 * step_length()) return std::nullopt;
         return model.respond(d).force;
       }
-      const runtime::Walk walked = runtime::walk(surface_, point, d.tangent, excess);
+      const Vec3 path = excess * model.soft_axes().restore(d.tangent);
+      const runtime::Walk walked = runtime::walk(surface_, point, path, norm(path));
       if (walked.at_border || walked.point.element != triangle) return std::nullopt;
       point = walked.point;
     }

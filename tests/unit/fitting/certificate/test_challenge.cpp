@@ -10,6 +10,7 @@
 #include "format/error.hpp"
 #include "tests/support/surfaces.hpp"
 #include "tests/support/units.hpp"
+#include "tests/unit/fitting/certificate/plain_model.hpp"
 
 namespace palpate::fitting {
 namespace {
@@ -37,6 +38,21 @@ TEST_P(ChallengeOfStreams, ApproachesTheBoundsAndDoesNotExceedThem) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, ChallengeOfStreams, testing::Values(51U, 52U, 53U));
+
+TEST(Challenge, ApproachesTheBoundsOfResponsesWithSoftAxes) {
+  std::mt19937 engine(54);
+  Library library = sphere(0.04, 1);
+  for (std::size_t v = 0; v < library.positions.size(); ++v)
+    library.responses.push_back(random_response(engine, 0.1));
+  couple(library, engine, 0.1);
+  soften(library, engine, 0.4);
+  certify(library, {});
+  const ChallengeResult result = challenge(library, {});
+  EXPECT_TRUE(result.confirms());
+  EXPECT_GT(result.sticking.quotient, 0.7 * result.sticking.bound);
+  EXPECT_GT(result.sliding.quotient, 0.5 * result.sliding.bound);
+  EXPECT_GT(result.sliding.tries, 10000);
+}
 
 TEST(Challenge, FindsTheStiffnessOfEqualSprings) {
   // Equal springs k: k at a fixed contact point, and while sliding sqrt(1 + mu^2) k.
