@@ -5,8 +5,8 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
+#include "fitting/certificate/slide_terms.hpp"
 #include "format/numbers.hpp"
 
 namespace palpate::fitting {
@@ -14,14 +14,6 @@ namespace {
 
 using Natural = SlideCell::Natural;
 using Values = std::array<Range, 3>;
-
-/// Range of a quantity interpolated from ranges at the vertices, over a part of the triangle.
-Range over(const std::array<Natural, 3>& part, const Values& value) {
-  Range result{kInfinity, -kInfinity};
-  for (const Natural& n : part)
-    result = hull(result, n[0] * value[0] + n[1] * value[1] + n[2] * value[2]);
-  return result;
-}
 
 /// Weighted sum of values at the vertices.
 double weighted(const Natural& n, const std::array<double, 3>& value) {
@@ -51,10 +43,6 @@ double norm_bound(const std::array<std::array<Range, 3>, 3>& entry) {
   return std::sqrt(std::max(0.0, eigen.eigenvalues()[2])) + radius.norm();
 }
 
-bool is_zero(const Range& a) {
-  return a.low == 0 && a.high == 0;
-}
-
 /// x >= 0 with slope x + curvature x^2 = rise, on a piece whose force rises by at least `rise`.
 double solve_piece(double slope, double curvature, double rise) {
   if (!(rise > 0)) return 0;
@@ -62,65 +50,6 @@ double solve_piece(double slope, double curvature, double rise) {
 }
 
 }  // namespace
-
-struct SlideJacobian::Facet {
-  Range cosine, sine;              ///< of the azimuth relative to `turn`
-  double turn = 0;                 ///< azimuth of the middle of the cell
-  Range n_N, n_b;                  ///< n along N and b
-  Range r;                         ///< length of n in the plane of N and tau
-  Range t_tau, n_tau;              ///< t . tau, n . tau
-  Range s_tau;                     ///< s . tau
-  Range kappa_t, kappa_s;          ///< t . dn/ds and s . dn/ds along tau, 1/m
-  Range lean_t, lean_s;            ///< t . sigma and s . sigma
-  Range lean_turn;                 ///< sigma . dn/ds, 1/m
-  Range lean_t_rate, lean_s_rate;  ///< t . d sigma/ds and s . d sigma/ds, 1/m
-  Range lean_growth;               ///< t . d sigma/dz, 1/m
-  Range lean_s_growth;             ///< s . d sigma/dz, 1/m
-};
-
-/// S in the frame (t, s) of the facet, in which t is the direction of q, and B' = -dS/ds along tau.
-/// With l = |S t|: S q = rho e for e = S t/l, and d = n x e.
-struct SlideJacobian::Softening {
-  Range e_t, e_s;             ///< t . e and s . e
-  Range l, m;                 ///< t . S e and s . S e
-  Range det;                  ///< s . S d; t . S d = 0
-  Range b_tt, b_ts, b_ss;     ///< B
-  Range db_tt, db_ts, db_ss;  ///< B', 1/m
-
-  /// From (n, e, d) to (n, t, s): S v.
-  std::array<Range, 3> stretched(const Range& n, const Range& e, const Range& d) const {
-    return {n, l * e, m * e + det * d};
-  }
-};
-
-struct SlideJacobian::AtVertex {
-  Range g, g_z;        ///< without the factor mu
-  Range w_z_h, w_h_r;  ///< derivatives of the lateral force w h by z and by rho
-  Range excess;        ///< Phi = w h - mu g
-  Range h_over_rho;    ///< w h/rho
-};
-
-struct SlideJacobian::Response {
-  Values g{}, excess{};  ///< at the vertices, for gradients
-  Range g_here, g_z, w_z_h, w_h_r, h_over_rho;
-};
-
-struct SlideJacobian::Terms {
-  Facet f;
-  Response r;
-  Range m;             ///< derivative of rho_s by z
-  Range g_tau;         ///< derivative of g along tau
-  Range mu_g;          ///< mu g
-  Range mu_g_z;        ///< derivative of mu g by z
-  Range n_z;           ///< that of the force along n: g', less what a growing lean takes
-  Range mu_g_tau;      ///< derivative of mu g along tau
-  Range limit_rate;    ///< decrease of rho_s along tau
-  Range q, p, s;       ///< those of (6), less what a slide to the limit needs of p
-  Range length;        ///< |q|, m: rho, or rho/|S t|
-  Range rate;          ///< decrease of rho - rho_s per unit motion of c
-  double norm_M0 = 0;  ///< |M_0|
-  std::optional<Softening> soft;
-};
 
 SlideJacobian::SlideJacobian(const ContactElement& element) : element_(&element) {
   const TriangleFrame& frame = element.frame;
@@ -153,14 +82,6 @@ SlideJacobian::SlideJacobian(const ContactElement& element) : element_(&element)
     lateral_.push_back(piece);
   }
 }
-
-/// Along N and the axes x, y turned by the middle of the azimuth.
-struct SlideJacobian::Axes {
-  Range N, x, y;
-  /// Along tau and b.
-  Range tau(const Facet& f) const { return x * f.cosine + y * f.sine; }
-  Range b(const Facet& f) const { return y * f.cosine - x * f.sine; }
-};
 
 SlideJacobian::Turned SlideJacobian::turned(const std::array<std::array<double, 3>, 3>& vertex,
                                             double turn) {
@@ -275,78 +196,6 @@ void SlideJacobian::add_lean(const SlideCell& cell, Facet& f) const {
   f.lean_turn = f.lean_t * f.kappa_t + f.lean_s * f.kappa_s;
   f.lean_t_rate = along_t(f, change) - along_n * f.kappa_t;
   f.lean_s_rate = along_s(f, change) - along_n * f.kappa_s;
-}
-
-/// sum n_l b_l b_l^T, or its derivative along tau, in the frame (N, tau, b).
-struct SlideJacobian::Tensor {
-  Range NN, Nt, Nb, tt, tb, bb;
-
-  std::array<Range, 3> operator*(const std::array<Range, 3>& v) const {
-    return {NN * v[0] + Nt * v[1] + Nb * v[2], Nt * v[0] + tt * v[1] + tb * v[2],
-            Nb * v[0] + tb * v[1] + bb * v[2]};
-  }
-};
-
-/// entry(i, j): that of the axes (N, x, y), which are turned by the middle of the azimuth.
-template <class Entry>
-SlideJacobian::Tensor SlideJacobian::along_tau(const Facet& f, const Entry& entry) {
-  const Range Nx = entry(0, 1), Ny = entry(0, 2), xx = entry(1, 1), xy = entry(1, 2),
-              yy = entry(2, 2);
-  const Range cc = square(f.cosine), ss = square(f.sine), cs = f.cosine * f.sine;
-  return {entry(0, 0),
-          f.cosine * Nx + f.sine * Ny,
-          f.cosine * Ny - f.sine * Nx,
-          cc * xx + ss * yy + 2 * (cs * xy),
-          (cc - ss) * xy + cs * (yy - xx),
-          ss * xx + cc * yy - 2 * (cs * xy)};
-}
-
-/// t, s and n have these components along N, tau and b; t has none along b.
-SlideJacobian::Softening SlideJacobian::softening(const SlideCell& cell, const Facet& f) const {
-  const Turned b = turned(soft_axis_, f.turn);
-  const double c0 = std::cos(f.turn), s0 = std::sin(f.turn);
-  const auto product = [&](std::size_t i, std::size_t j, std::size_t l) {
-    return b[i][l] * b[j][l];
-  };
-  const auto sum = [&](std::size_t i, std::size_t j) {
-    const auto at = [&](std::size_t l) { return Range{product(i, j, l), product(i, j, l)}; };
-    return over(cell.part, {at(0), at(1), at(2)});
-  };
-  const auto change = [&](std::size_t i, std::size_t j) {
-    double by_x = 0, by_y = 0;
-    for (std::size_t l = 1; l < 3; ++l) {
-      const double difference = product(i, j, l) - product(i, j, 0);
-      by_x += difference * (c0 * gradient_[l][0] + s0 * gradient_[l][1]);
-      by_y += difference * (c0 * gradient_[l][1] - s0 * gradient_[l][0]);
-    }
-    return by_x * f.cosine + by_y * f.sine;
-  };
-  const std::array<Range, 3> t{(-1) * f.n_tau / f.r, f.n_N / f.r, {}};
-  const std::array<Range, 3> s{(-1) * f.n_b * f.n_N / f.r, (-1) * f.n_b * f.n_tau / f.r, f.r};
-  const std::array<Range, 3> n{f.n_N, f.n_tau, f.n_b};
-  const auto dot = [](const std::array<Range, 3>& u, const std::array<Range, 3>& v) {
-    return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
-  };
-  const Tensor whole = along_tau(f, sum), rate = along_tau(f, change);
-  const auto of_t = whole * t, of_s = whole * s, rate_of_t = rate * t, rate_of_s = rate * s;
-  const Range n_t = dot(n, of_t), n_s = dot(n, of_s);
-  Softening soft;
-  soft.db_tt = dot(t, rate_of_t) - 2 * (f.kappa_t * n_t);
-  soft.db_ts = dot(t, rate_of_s) - f.kappa_t * n_s - f.kappa_s * n_t;
-  soft.db_ss = dot(s, rate_of_s) - 2 * (f.kappa_s * n_s);
-  // |B| is at most that of the longest b_l, and B is not negative.
-  const double most = element_->most_softening();
-  soft.b_tt = common(dot(t, of_t), {0, most});
-  soft.b_ts = common(dot(t, of_s), {-0.5 * most, 0.5 * most});
-  soft.b_ss = common(dot(s, of_s), {0, most});
-  const Range one{1, 1};
-  const Range tt = one - soft.b_tt, ts = (-1) * soft.b_ts, ss = one - soft.b_ss;
-  soft.l = common(root(square(tt) + square(ts)), {1 - most, 1});
-  soft.e_t = tt / soft.l;
-  soft.e_s = ts / soft.l;
-  soft.m = ts * (tt + ss) / soft.l;
-  soft.det = (tt * ss - square(ts)) / soft.l;
-  return soft;
 }
 
 Range SlideJacobian::along(const Facet& facet, const Values& value) const {
@@ -479,21 +328,6 @@ SlideJacobian::Terms SlideJacobian::terms(const SlideCell& cell, const Range& rh
   return x;
 }
 
-/// (6c): p and s become those of S q, in the frame (n, e, d).
-void SlideJacobian::add_softening(Terms& x) const {
-  const Softening& soft = *x.soft;
-  const Range p = x.p, s = x.s;
-  const Range along = soft.e_t * soft.db_tt + soft.e_s * soft.db_ts;
-  const Range across = soft.e_t * soft.db_ts - soft.e_s * soft.db_tt;
-  x.p = soft.l * p + soft.m * s + x.length * along;
-  x.s = soft.det * s + x.length * across;
-  x.rate = x.p - x.m * x.q - x.limit_rate;
-  const Range zero{};
-  x.norm_M0 = leaned_norm(x.f, {{{x.n_z, zero, zero},
-                                 {soft.l * x.mu_g_z, zero, zero},
-                                 {soft.m * x.mu_g_z, zero, square(soft.det) * x.r.h_over_rho}}});
-}
-
 /// The z of (6a): what a lean shears is sigma (z - z_w/2), and z_w = z where responses are coupled.
 Range SlideJacobian::sheared_depth(const SlideCell& cell) const {
   return element_->coupling ? 0.5 * cell.z : cell.z;
@@ -564,62 +398,6 @@ double SlideJacobian::bound_of_response(const SlideCell& cell, const Range& rho,
                                            {(-1) * v_s * x.m, v_s, x.r.h_over_rho}}}));
 }
 
-/// What the turning of S and A adds to the derivative of the force by a motion of c, in the frame
-/// (n, t, s): (9c), and (9b) with S e for t.
-SlideJacobian::Entries::value_type SlideJacobian::turning(const Terms& x) const {
-  const Softening& soft = *x.soft;
-  const Facet& f = x.f;
-  // B n' and B' e, across n
-  const Range turned_t = soft.b_tt * f.kappa_t + soft.b_ts * f.kappa_s;
-  const Range turned_s = soft.b_ts * f.kappa_t + soft.b_ss * f.kappa_s;
-  const Range changed_t = soft.db_tt * soft.e_t + soft.db_ts * soft.e_s;
-  const Range changed_s = soft.db_ts * soft.e_t + soft.db_ss * soft.e_s;
-  Entries::value_type v{x.mu_g * (soft.e_t * turned_t + soft.e_s * turned_s),
-                        x.r.g_here * turned_t - x.mu_g * changed_t,
-                        x.r.g_here * turned_s - x.mu_g * changed_s};
-  if (!leans_) return v;
-  const Range leaning = x.mu_g * (soft.l * f.lean_t + soft.m * f.lean_s);
-  const Range rate = soft.l * f.lean_t_rate + soft.m * f.lean_s_rate;
-  v[0] = v[0] - leaning * f.lean_turn - x.mu_g * rate + x.r.g_here * f.lean_turn;
-  v[1] = v[1] - leaning * f.kappa_t;
-  v[2] = v[2] - leaning * f.kappa_s;
-  return v;
-}
-
-/// The same as bound_of_response, with x' in the frame (n, t, s) and S (M_0 + v w^T) S.
-double SlideJacobian::bound_of_soft_response(const Terms& x) const {
-  const Softening& soft = *x.soft;
-  const Range kappa_e = soft.e_t * x.f.kappa_t + soft.e_s * x.f.kappa_s;
-  const Range kappa_d = soft.e_t * x.f.kappa_s - soft.e_s * x.f.kappa_t;
-  const Range v_n = x.g_tau - x.n_z * x.q - x.mu_g * kappa_e;
-  const Range v_e = x.mu_g_tau - x.mu_g_z * x.q + x.r.g_here * kappa_e;
-  const Range v_d = x.r.g_here * kappa_d - x.r.h_over_rho * x.s;
-  auto v = soft.stretched(v_n, v_e, v_d);
-  const auto more = turning(x);
-  for (std::size_t i = 0; i < 3; ++i) v[i] = v[i] + more[i];
-  if (is_zero(v[0]) && is_zero(v[1]) && is_zero(v[2])) return kRoundingFactor * x.norm_M0;
-  if (!(x.rate.low > 0)) return kInfinity;
-  const Range zero{}, fixed_d = square(soft.det) * x.r.h_over_rho;
-  // M_0 + v (-m, l, m_s)/rate, and with another v over l for a slide that is too long
-  const auto matrix = [&](const std::array<Range, 3>& by, const Range& divisor) {
-    const std::array<Range, 3> w{(-1) * x.m / divisor, soft.l / divisor, soft.m / divisor};
-    const Range first[3] = {x.n_z, soft.l * x.mu_g_z, soft.m * x.mu_g_z};
-    Entries entries;
-    for (std::size_t i = 0; i < 3; ++i)
-      entries[i] = {first[i] + by[i] * w[0], by[i] * w[1], by[i] * w[2]};
-    entries[2][2] = entries[2][2] + fixed_d;
-    return leaned_norm(x.f, entries);
-  };
-  const double norm = std::max(x.norm_M0, matrix(v, x.rate));
-  const Range moved = x.rate / soft.l;
-  if (moved.high <= 1) return kRoundingFactor * norm;
-  // The runtime moves c by |q| - |q_s|, which is more than needed: (10d).
-  const Range over{std::max(0.0, moved.low - 1), moved.high - 1};
-  const auto back = soft.stretched(zero, over * x.r.w_h_r, zero);
-  for (std::size_t i = 0; i < 3; ++i) v[i] = v[i] - soft.l * back[i];
-  return kRoundingFactor * std::max(norm, matrix(v, soft.l));
-}
-
 SlideCauses SlideJacobian::causes(const SlideCell& state) const {
   const Range rho = slip_limit(state);
   if (!(rho.high < kInfinity)) return {0, kInfinity, kInfinity, kInfinity};
@@ -638,10 +416,12 @@ SlideCauses SlideJacobian::causes(const SlideCell& state) const {
       length(x.r.g_z * turned - x.mu_g * x.f.kappa_t, x.mu_g_z * turned + x.r.g_here * x.f.kappa_t,
              (x.r.g_here - x.r.h_over_rho * state.reach) * x.f.kappa_s)};
   if (x.soft) {
-    const auto more = turning(x);
-    causes.softening = length(more[0], more[1], more[2]);
+    const Vector of_soft = soft_turning(x), of_lean = leans_ ? lean_turning(x) : Vector{};
+    causes.softening = length(of_soft[0], of_soft[1], of_soft[2]);
+    causes.lean = length(of_lean[0], of_lean[1], of_lean[2]);
+    return causes;
   }
-  if (!leans_ || x.soft) return causes;
+  if (!leans_) return causes;
   const Range shift = sheared_depth(state) * x.f.lean_turn;
   Range n = x.n_z * shift, t = x.mu_g_z * shift;
   Range s = x.r.h_over_rho * (x.f.lean_s * x.q - sheared_depth(state) * x.f.lean_s_rate);

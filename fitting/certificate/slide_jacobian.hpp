@@ -81,13 +81,15 @@ class SlideJacobian {
   Range slip_limit(const SlideCell& cell) const;
   AtVertex at_vertex(std::size_t vertex, const Range& z, const Range& rho) const;
   Response response(const SlideCell& cell, const Range& rho) const;
-  using Entries = std::array<std::array<Range, 3>, 3>;
+  using Vector = std::array<Range, 3>;
+  using Entries = std::array<Vector, 3>;
   /// Bound of the norm of A^T X A for X in the frame (n, t, s).
   double leaned_norm(const Facet& facet, const Entries& x) const;
   Terms terms(const SlideCell& cell, const Range& rho, Grip grip) const;
   double bound_of_response(const SlideCell& cell, const Range& rho, Grip grip) const;
   double bound_of_soft_response(const Terms& x) const;
-  Entries::value_type turning(const Terms& x) const;
+  static Vector soft_turning(const Terms& x);
+  static Vector lean_turning(const Terms& x);
   void add_softening(Terms& x) const;
   /// Derivative along tau of a quantity with these values at the vertices.
   Range along(const Facet& facet, const std::array<Range, 3>& values) const;

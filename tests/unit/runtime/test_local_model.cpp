@@ -47,6 +47,17 @@ class LocalModelTest : public ::testing::Test {
     return model.energy(model.deflection(x));
   }
 
+  static void expect_gradient(const LocalModel& model, const Vec3& x) {
+    const double h = 1e-7;
+    const Vec3 f = force(model, x);
+    for (std::size_t i = 0; i < 3; ++i) {
+      Vec3 up = x, down = x;
+      up[i] += h;
+      down[i] -= h;
+      EXPECT_NEAR((energy(model, up) - energy(model, down)) / (2 * h), f[i], 1e-7);
+    }
+  }
+
   /// c along d in its element, c + s by a': s is what is left of c + s - c across n(c). The anchor
   /// rests while c catches up with it, or slips along t.
   void expect_slope_of_energy(const Surface& body, bool anchor_rests) {
@@ -95,7 +106,6 @@ class LeaningModelTest : public LocalModelTest {
 };
 
 TEST_F(LeaningModelTest, ForceIsTheGradientOfTheEnergy) {
-  const double h = 1e-7;
   std::uniform_real_distribution<double> any(-0.003, 0.003);
   double furthest = 0;
   for (int trial = 0; trial < 600; ++trial) {
@@ -106,12 +116,7 @@ TEST_F(LeaningModelTest, ForceIsTheGradientOfTheEnergy) {
     const Vec3 leans = force(model, straight);
     furthest =
         std::max(furthest, norm(leans - dot(leans, model.normal()) * model.normal()) / norm(leans));
-    for (std::size_t i = 0; i < 3; ++i) {
-      Vec3 up = x, down = x;
-      up[i] += h;
-      down[i] -= h;
-      EXPECT_NEAR((energy(model, up) - energy(model, down)) / (2 * h), force(model, x)[i], 1e-7);
-    }
+    expect_gradient(model, x);
   }
   EXPECT_GT(furthest, 0.05);  // presses do lean
 }
@@ -151,7 +156,6 @@ class SoftModelTest : public LocalModelTest {
 };
 
 TEST_F(SoftModelTest, ForceIsTheGradientOfTheEnergy) {
-  const double h = 1e-7;
   std::uniform_real_distribution<double> any(-0.003, 0.003);
   double furthest = 0;
   for (int trial = 0; trial < 600; ++trial) {
@@ -164,12 +168,7 @@ TEST_F(SoftModelTest, ForceIsTheGradientOfTheEnergy) {
     const Vec3 across = f - dot(f, model.normal()) * model.normal();
     furthest = std::max(furthest, norm(cross(q, across)) / (norm(q) * norm(across)));
     EXPECT_LE(norm(across), model.respond(d).lateral_force * (1 + 1e-12));  // |S| <= 1
-    for (std::size_t i = 0; i < 3; ++i) {
-      Vec3 up = x, down = x;
-      up[i] += h;
-      down[i] -= h;
-      EXPECT_NEAR((energy(model, up) - energy(model, down)) / (2 * h), f[i], 1e-7);
-    }
+    expect_gradient(model, x);
   }
   EXPECT_GT(furthest, 0.1);  // forces are not along the deflections
 }
@@ -201,17 +200,10 @@ TEST_F(SoftModelTest, ASlipBringsTheForceToItsLimitInTheSameDirection) {
 }
 
 TEST_F(LocalModelTest, ForceIsTheGradientOfTheEnergy) {
-  const double h = 1e-7;
   for (int trial = 0; trial < 300; ++trial) {
     const LocalModel model(surface_, random_point(), 0.0004);
     const Vec3 x = random_tip(model);
-    for (std::size_t i = 0; i < 3; ++i) {
-      Vec3 up = x;
-      Vec3 down = x;
-      up[i] += h;
-      down[i] -= h;
-      EXPECT_NEAR((energy(model, up) - energy(model, down)) / (2 * h), force(model, x)[i], 1e-7);
-    }
+    expect_gradient(model, x);
   }
 }
 

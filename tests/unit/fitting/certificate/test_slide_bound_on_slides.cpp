@@ -77,12 +77,16 @@ TEST(StickBound, NoCoupledJacobianWithinTheSlipLimitIsSteeper) {
   }
 }
 
-TEST(SlipBound, NoSlidingPathIsSteeper) {
-  std::mt19937 engine(37);
+/// Random slides over random triangles, whose responses `shape` makes of another kind; it is given
+/// the number of the triangle.
+template <class Shape>
+SlideCensus census_of(unsigned seed, double spread, const Shape& shape) {
+  std::mt19937 engine(seed);
   SlideCensus census;
   for (const double mu : {0.1, 0.3, 0.6}) {
     for (int trial = 0; trial < 40; ++trial) {
-      Library library = random_triangle(engine, 0.03, 0.1 + 0.2 * (trial % 3));
+      Library library = random_triangle(engine, 0.03, spread + 2 * spread * (trial % 3));
+      shape(library, engine, trial);
       CertifySettings settings;
       settings.friction = mu;
       certify(library, settings);
@@ -91,65 +95,36 @@ TEST(SlipBound, NoSlidingPathIsSteeper) {
     }
   }
   EXPECT_GT(census.slides, 10000);
+  return census;
+}
+
+TEST(SlipBound, NoSlidingPathIsSteeper) {
+  const SlideCensus census = census_of(37, 0.1, [](Library&, std::mt19937&, int) {});
   EXPECT_GT(census.closest, 0.85);  // and the bound is not idle
 }
 
 TEST(SlipBound, NoCoupledSlidingPathIsSteeper) {
-  std::mt19937 engine(39);
-  SlideCensus census;
-  int bounded = 0;
-  for (const double mu : {0.1, 0.3, 0.6}) {
-    for (int trial = 0; trial < 40; ++trial) {
-      Library library = random_triangle(engine, 0.03, 0.05 + 0.1 * (trial % 3));
-      couple(library, engine, 0.1);
-      CertifySettings settings;
-      settings.friction = mu;
-      certify(library, settings);
-      if (std::isinf(library.certificate.slip)) continue;
-      ++bounded;
-      try_slides(engine, library, mu, census);
-    }
-  }
-  EXPECT_GT(census.slides, 10000);
+  const SlideCensus census = census_of(
+      39, 0.05, [](Library& library, std::mt19937& engine, int) { couple(library, engine, 0.1); });
   EXPECT_GT(census.closest, 0.85);
 }
 
 TEST(SlipBound, NoSlidingPathIsSteeperWherePressesLean) {
-  std::mt19937 engine(40);
-  SlideCensus census;
-  for (const double mu : {0.1, 0.3, 0.6}) {
-    for (int trial = 0; trial < 40; ++trial) {
-      Library library = random_triangle(engine, 0.03, 0.05 + 0.1 * (trial % 3));
-      if (trial % 2 == 0) couple(library, engine, 0.1);
-      lean(library, engine, 0.1);
-      CertifySettings settings;
-      settings.friction = mu;
-      certify(library, settings);
-      if (std::isinf(library.certificate.slip)) continue;
-      try_slides(engine, library, mu, census);
-    }
-  }
-  EXPECT_GT(census.slides, 10000);
+  const SlideCensus census =
+      census_of(40, 0.05, [](Library& library, std::mt19937& engine, int trial) {
+        if (trial % 2 == 0) couple(library, engine, 0.1);
+        lean(library, engine, 0.1);
+      });
   EXPECT_GT(census.closest, 0.75);
 }
 
 TEST(SlipBound, NoSlidingPathIsSteeperWhereResponsesHaveSoftAxes) {
-  std::mt19937 engine(42);
-  SlideCensus census;
-  for (const double mu : {0.1, 0.3, 0.6}) {
-    for (int trial = 0; trial < 40; ++trial) {
-      Library library = random_triangle(engine, 0.03, 0.05 + 0.1 * (trial % 3));
-      couple(library, engine, 0.1);
-      if (trial % 2 == 0) lean(library, engine, 0.1);
-      soften(library, engine, 0.4);
-      CertifySettings settings;
-      settings.friction = mu;
-      certify(library, settings);
-      if (std::isinf(library.certificate.slip)) continue;
-      try_slides(engine, library, mu, census);
-    }
-  }
-  EXPECT_GT(census.slides, 10000);
+  const SlideCensus census =
+      census_of(42, 0.05, [](Library& library, std::mt19937& engine, int trial) {
+        couple(library, engine, 0.1);
+        if (trial % 2 == 0) lean(library, engine, 0.1);
+        soften(library, engine, 0.4);
+      });
   EXPECT_GT(census.closest, 0.75);
 }
 

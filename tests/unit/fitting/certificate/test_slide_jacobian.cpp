@@ -13,27 +13,37 @@
 namespace palpate::fitting {
 namespace {
 
+/// Of random states of random triangles, which `shape` makes of another kind: how many have steps
+/// as steep as `fraction` of the bound of their state; none is steeper.
+template <class Shape>
+int steep_states(std::mt19937& engine, int trials, double fraction, const Shape& shape) {
+  int alike = 0;
+  for (int trial = 0; trial < trials; ++trial) {
+    Library library = random_triangle(engine, 0.06, 0.2);
+    shape(library);
+    const double mu = 0.1 + 0.2 * (trial % 3);
+    const ContactElement element = contact_element(library, 0, 0.008, mu);
+    const PlainModel model(library, 0);
+    const SlidingState state = random_slide(engine, model, element);
+    const double expected = SlideJacobian(element).bound(state.cell);
+    EXPECT_TRUE(std::isfinite(expected));
+    const double found = steepest_step(engine, model, state.start, mu);
+    EXPECT_LE(found, expected * (1 + 1e-4)) << "trial " << trial;
+    alike += found > fraction * expected ? 1 : 0;
+  }
+  return alike;
+}
+
 TEST(SlideJacobian, OfOneStateIsTheLargestForceGradientOfASlide) {
   std::mt19937 engine(45);
   for (const double most_lean : {0.0, 0.15}) {
     for (const bool coupled : {false, true}) {
-      int alike = 0;
-      for (int trial = 0; trial < 60; ++trial) {
-        Library library = random_triangle(engine, 0.06, 0.2);
+      // The others soften as they slide: M_0 is steeper. |A|^2 is no eigenvalue.
+      const int alike = steep_states(engine, 60, 0.98 - most_lean, [&](Library& library) {
         if (coupled) couple(library, engine, 0.3);
         lean(library, engine, most_lean);
-        const double mu = 0.1 + 0.2 * (trial % 3);
-        const ContactElement element = contact_element(library, 0, 0.008, mu);
-        const PlainModel model(library, 0);
-        const SlidingState state = random_slide(engine, model, element);
-        const double expected = SlideJacobian(element).bound(state.cell);
-        ASSERT_TRUE(std::isfinite(expected));
-        const double found = steepest_step(engine, model, state.start, mu);
-        EXPECT_LE(found, expected * (1 + 1e-4)) << "coupled " << coupled << ", trial " << trial;
-        // The others soften as they slide: M_0 is steeper. |A|^2 is no eigenvalue.
-        alike += found > (0.98 - most_lean) * expected ? 1 : 0;
-      }
-      EXPECT_GT(alike, 50) << "lean " << most_lean;
+      });
+      EXPECT_GT(alike, 50) << "coupled " << coupled << ", lean " << most_lean;
     }
   }
 }
@@ -41,22 +51,11 @@ TEST(SlideJacobian, OfOneStateIsTheLargestForceGradientOfASlide) {
 TEST(SlideJacobian, OfOneStateWithSoftAxesIsTheLargestForceGradientOfASlide) {
   std::mt19937 engine(46);
   for (const double most_lean : {0.0, 0.15}) {
-    int alike = 0;
-    for (int trial = 0; trial < 120; ++trial) {
-      Library library = random_triangle(engine, 0.06, 0.2);
+    const int alike = steep_states(engine, 120, 0.97, [&](Library& library) {
       couple(library, engine, 0.3);
       lean(library, engine, most_lean);
       soften(library, engine, 0.5);
-      const double mu = 0.1 + 0.2 * (trial % 3);
-      const ContactElement element = contact_element(library, 0, 0.008, mu);
-      const PlainModel model(library, 0);
-      const SlidingState state = random_slide(engine, model, element);
-      const double expected = SlideJacobian(element).bound(state.cell);
-      ASSERT_TRUE(std::isfinite(expected));
-      const double found = steepest_step(engine, model, state.start, mu);
-      EXPECT_LE(found, expected * (1 + 1e-4)) << "lean " << most_lean << ", trial " << trial;
-      alike += found > 0.97 * expected ? 1 : 0;
-    }
+    });
     EXPECT_GT(alike, 80) << "lean " << most_lean;
   }
 }

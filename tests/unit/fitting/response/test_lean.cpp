@@ -13,6 +13,7 @@
 #include "fitting/response/site_samples.hpp"
 #include "runtime/local_model.hpp"
 #include "runtime/surface.hpp"
+#include "tests/unit/fitting/response/one_triangle.hpp"
 
 namespace palpate::fitting {
 namespace {
@@ -104,17 +105,6 @@ NodeResponse coupled_springs() {
   w.base += static_cast<float>(
       1 - runtime::CompiledCurve(w.curve, static_cast<double>(w.base)).force(kDeep));
   return node;
-}
-
-Body one_triangle() {
-  Body body;
-  body.name = "triangle";
-  body.nodes = {{0, 0, 0}, {0.01, 0, 0}, {0, 0.01, 0}};
-  body.response.node = {0, 1, 2};
-  body.response.inward = {kInto, kInto, kInto};
-  body.response.is_site = {1, 1, 1};
-  body.response.triangles = {{0, 1, 2}};
-  return body;
 }
 
 /// A tool without friction shears nothing as it is pressed.

@@ -13,6 +13,7 @@
 #include "fitting/response/lean.hpp"
 #include "runtime/local_model.hpp"
 #include "runtime/surface.hpp"
+#include "tests/unit/fitting/response/one_triangle.hpp"
 
 namespace palpate::fitting {
 namespace {
@@ -68,20 +69,13 @@ struct SoftSprings {
 };
 
 Library library_of(const SoftSprings& springs, FitSettings settings = {}) {
-  Body body;
-  body.name = "triangle";
-  body.nodes = {{0, 0, 0}, {0.01, 0, 0}, {0, 0.01, 0}};
-  body.response.node = {0, 1, 2};
-  body.response.inward = {kInto, kInto, kInto};
-  body.response.is_site = {1, 1, 1};
-  body.response.triangles = {{0, 1, 2}};
   Curves curves;
   curves.depth = kPressed;
   curves.tool.friction = "no-slip";
   for (std::int32_t v = 0; v < 3; ++v) curves.sites.push_back(springs.site(v, {0, 0.5 * M_PI}));
   settings.kind = ResponseKind::Coupled;
   settings.relative_tolerance = 1e-3;
-  return fit(body, curves, settings);
+  return fit(one_triangle(), curves, settings);
 }
 
 /// The largest difference between rendered and true forces of drags in all directions, over the
