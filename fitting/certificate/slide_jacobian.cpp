@@ -14,6 +14,8 @@ namespace {
 
 using Natural = SlideCell::Natural;
 using Values = std::array<Range, 3>;
+using slide::is_zero;
+using slide::over;
 
 /// Weighted sum of values at the vertices.
 double weighted(const Natural& n, const std::array<double, 3>& value) {
@@ -95,22 +97,22 @@ SlideJacobian::Turned SlideJacobian::turned(const std::array<std::array<double, 
   return along;
 }
 
-SlideJacobian::Axes SlideJacobian::interpolated(const SlideCell& cell, const Turned& vectors) {
+slide::Axes SlideJacobian::interpolated(const SlideCell& cell, const Turned& vectors) {
   const auto component = [&](const std::array<double, 3>& v) {
     return over(cell.part, {Range{v[0], v[0]}, Range{v[1], v[1]}, Range{v[2], v[2]}});
   };
   return {component(vectors[0]), component(vectors[1]), component(vectors[2])};
 }
 
-SlideJacobian::Axes SlideJacobian::interpolated(const SlideCell& cell, const Turned& vectors,
-                                                const Weights& weights) {
+slide::Axes SlideJacobian::interpolated(const SlideCell& cell, const Turned& vectors,
+                                        const Weights& weights) {
   const auto component = [&](const std::array<double, 3>& v) {
     return over(cell.part, {v[0] * weights[0], v[1] * weights[1], v[2] * weights[2]});
   };
   return {component(vectors[0]), component(vectors[1]), component(vectors[2])};
 }
 
-SlideJacobian::Axes SlideJacobian::rate(const Facet& f, const Turned& vectors) const {
+slide::Axes SlideJacobian::rate(const Facet& f, const Turned& vectors) const {
   const double c0 = std::cos(f.turn), s0 = std::sin(f.turn);
   const auto component = [&](const std::array<double, 3>& u) {
     double by_x = 0, by_y = 0;
@@ -123,8 +125,8 @@ SlideJacobian::Axes SlideJacobian::rate(const Facet& f, const Turned& vectors) c
   return {component(vectors[0]), component(vectors[1]), component(vectors[2])};
 }
 
-SlideJacobian::Axes SlideJacobian::rate(const Facet& f, const Turned& vectors,
-                                        const Weights& weights) const {
+slide::Axes SlideJacobian::rate(const Facet& f, const Turned& vectors,
+                                const Weights& weights) const {
   const auto component = [&](const std::array<double, 3>& v) {
     return along(f, {v[0] * weights[0], v[1] * weights[1], v[2] * weights[2]});
   };
@@ -133,7 +135,7 @@ SlideJacobian::Axes SlideJacobian::rate(const Facet& f, const Turned& vectors,
 
 /// tau is the axis x turned by the azimuth; b = N x tau; t is the unit vector normal to n in the
 /// plane of N and tau, s = n x t.
-SlideJacobian::Facet SlideJacobian::facet(const SlideCell& cell) const {
+slide::Facet SlideJacobian::facet(const SlideCell& cell) const {
   // Relative to the middle of the range, cosines are near 1 and sines are small.
   const double half = cell.azimuth.radius();
   Facet f;
@@ -247,8 +249,8 @@ Range SlideJacobian::slip_limit(const SlideCell& cell) const {
   return rho;
 }
 
-SlideJacobian::AtVertex SlideJacobian::at_vertex(std::size_t vertex, const Range& z,
-                                                 const Range& rho) const {
+slide::AtVertex SlideJacobian::at_vertex(std::size_t vertex, const Range& z,
+                                         const Range& rho) const {
   const ContactElement& e = *element_;
   const runtime::CompiledCurve& normal = e.normal.curves()[vertex];
   const runtime::CompiledCurve& lateral = e.lateral.curves()[vertex];
@@ -273,7 +275,7 @@ SlideJacobian::AtVertex SlideJacobian::at_vertex(std::size_t vertex, const Range
   return v;
 }
 
-SlideJacobian::Response SlideJacobian::response(const SlideCell& cell, const Range& rho) const {
+slide::Response SlideJacobian::response(const SlideCell& cell, const Range& rho) const {
   Response r;
   Values g_z, w_z_h, w_h_r, h_over_rho;
   for (std::size_t l = 0; l < 3; ++l) {
@@ -294,8 +296,7 @@ SlideJacobian::Response SlideJacobian::response(const SlideCell& cell, const Ran
 }
 
 /// The terms that divide by w h' are left out where it may be zero.
-SlideJacobian::Terms SlideJacobian::terms(const SlideCell& cell, const Range& rho,
-                                          Grip grip) const {
+slide::Terms SlideJacobian::terms(const SlideCell& cell, const Range& rho, Grip grip) const {
   const double mu = element_->friction;
   Terms x;
   x.f = facet(cell);

@@ -11,6 +11,15 @@
 
 namespace palpate::fitting {
 
+namespace slide {
+struct Facet;     // depends on the position and the azimuth
+struct Response;  // depends on the curves
+struct AtVertex;
+struct Terms;  // of (8) and (9)
+struct Axes;
+struct Softening;  // S and its derivative
+}  // namespace slide
+
 /// A set of states at limiting friction. A single state has equal corners and ranges of one number.
 struct SlideCell {
   using Natural = std::array<double, 3>;
@@ -47,13 +56,12 @@ class SlideJacobian {
   SlideCauses causes(const SlideCell& state) const;
 
  private:
-  struct Facet;     // depends on the position and the azimuth
-  struct Response;  // depends on the curves
-  struct AtVertex;
-  struct Terms;  // of (8) and (9)
-  struct Axes;
-  struct Softening;  // S and its derivative
-  struct Tensor;
+  using Facet = slide::Facet;
+  using Response = slide::Response;
+  using AtVertex = slide::AtVertex;
+  using Terms = slide::Terms;
+  using Axes = slide::Axes;
+  using Softening = slide::Softening;
   using Turned = std::array<std::array<double, 3>, 3>;  ///< components of the vectors of vertices
   using Weights = std::array<Range, 3>;                 ///< of the vertices
 
@@ -72,8 +80,6 @@ class SlideJacobian {
   Facet facet(const SlideCell& cell) const;
   void add_lean(const SlideCell& cell, Facet& facet) const;
   Softening softening(const SlideCell& cell, const Facet& facet) const;
-  template <class Entry>
-  static Tensor along_tau(const Facet& facet, const Entry& entry);
   void add_lean(const SlideCell& cell, Grip grip, Terms& terms) const;
   static void add_lean(const Terms& terms, Range& v_n, Range& v_t, Range& v_s);
   Range sheared_depth(const SlideCell& cell) const;

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What the sources of SlideJacobian share: its terms, over a set of states.
+// The terms of SlideJacobian, over a set of states.
 #pragma once
 
 #include <array>
 #include <optional>
 
-#include "fitting/certificate/slide_jacobian.hpp"
+#include "fitting/certificate/range.hpp"
 #include "format/numbers.hpp"
 
-namespace palpate::fitting {
+namespace palpate::fitting::slide {
 
 /// Range of a quantity interpolated from ranges at the vertices, over a part of the triangle.
-inline Range over(const std::array<SlideCell::Natural, 3>& part,
+inline Range over(const std::array<std::array<double, 3>, 3>& part,
                   const std::array<Range, 3>& value) {
   Range result{kInfinity, -kInfinity};
-  for (const SlideCell::Natural& n : part)
+  for (const std::array<double, 3>& n : part)
     result = hull(result, n[0] * value[0] + n[1] * value[1] + n[2] * value[2]);
   return result;
 }
@@ -23,7 +23,7 @@ inline bool is_zero(const Range& a) {
   return a.low == 0 && a.high == 0;
 }
 
-struct SlideJacobian::Facet {
+struct Facet {
   Range cosine, sine;              ///< of the azimuth relative to `turn`
   double turn = 0;                 ///< azimuth of the middle of the cell
   Range n_N, n_b;                  ///< n along N and b
@@ -41,7 +41,7 @@ struct SlideJacobian::Facet {
 /// S and B' = -dS/ds along tau, in the frame (t, s) of the facet: there t is the direction of q,
 /// which is that of p where there are no soft axes. With l = |S t|: p = S q = rho e for e = S t/l,
 /// and d = n x e. The theory page calls q's direction e and p's t.
-struct SlideJacobian::Softening {
+struct Softening {
   Range e_t, e_s;             ///< t . e and s . e
   Range l, m;                 ///< t . S e and s . S e
   Range det;                  ///< s . S d; t . S d = 0
@@ -54,19 +54,19 @@ struct SlideJacobian::Softening {
   }
 };
 
-struct SlideJacobian::AtVertex {
+struct AtVertex {
   Range g, g_z;        ///< without the factor mu
   Range w_z_h, w_h_r;  ///< derivatives of the lateral force w h by z and by rho
   Range excess;        ///< Phi = w h - mu g
   Range h_over_rho;    ///< w h/rho
 };
 
-struct SlideJacobian::Response {
+struct Response {
   std::array<Range, 3> g{}, excess{};  ///< at the vertices, for gradients
   Range g_here, g_z, w_z_h, w_h_r, h_over_rho;
 };
 
-struct SlideJacobian::Terms {
+struct Terms {
   Facet f;
   Response r;
   Range m;             ///< derivative of rho_s by z
@@ -84,11 +84,11 @@ struct SlideJacobian::Terms {
 };
 
 /// Along N and the axes x, y turned by the middle of the azimuth.
-struct SlideJacobian::Axes {
+struct Axes {
   Range N, x, y;
   /// Along tau and b.
   Range tau(const Facet& f) const { return x * f.cosine + y * f.sine; }
   Range b(const Facet& f) const { return y * f.cosine - x * f.sine; }
 };
 
-}  // namespace palpate::fitting
+}  // namespace palpate::fitting::slide

@@ -9,8 +9,10 @@
 
 namespace palpate::fitting {
 
+namespace {
+
 /// sum n_l b_l b_l^T, or its derivative along tau, in the frame (N, tau, b).
-struct SlideJacobian::Tensor {
+struct Tensor {
   Range NN, Nt, Nb, tt, tb, bb;
 
   std::array<Range, 3> operator*(const std::array<Range, 3>& v) const {
@@ -21,7 +23,7 @@ struct SlideJacobian::Tensor {
 
 /// entry(i, j): that of the axes (N, x, y), which are turned by the middle of the azimuth.
 template <class Entry>
-SlideJacobian::Tensor SlideJacobian::along_tau(const Facet& f, const Entry& entry) {
+Tensor along_tau(const slide::Facet& f, const Entry& entry) {
   const Range Nx = entry(0, 1), Ny = entry(0, 2), xx = entry(1, 1), xy = entry(1, 2),
               yy = entry(2, 2);
   const Range cc = square(f.cosine), ss = square(f.sine), cs = f.cosine * f.sine;
@@ -33,8 +35,10 @@ SlideJacobian::Tensor SlideJacobian::along_tau(const Facet& f, const Entry& entr
           ss * xx + cc * yy - 2 * (cs * xy)};
 }
 
+}  // namespace
+
 /// t, s and n have these components along N, tau and b; t has none along b.
-SlideJacobian::Softening SlideJacobian::softening(const SlideCell& cell, const Facet& f) const {
+slide::Softening SlideJacobian::softening(const SlideCell& cell, const Facet& f) const {
   const Turned b = turned(soft_axis_, f.turn);
   const double c0 = std::cos(f.turn), s0 = std::sin(f.turn);
   const auto product = [&](std::size_t i, std::size_t j, std::size_t l) {
@@ -42,7 +46,7 @@ SlideJacobian::Softening SlideJacobian::softening(const SlideCell& cell, const F
   };
   const auto sum = [&](std::size_t i, std::size_t j) {
     const auto at = [&](std::size_t l) { return Range{product(i, j, l), product(i, j, l)}; };
-    return over(cell.part, {at(0), at(1), at(2)});
+    return slide::over(cell.part, {at(0), at(1), at(2)});
   };
   const auto change = [&](std::size_t i, std::size_t j) {
     double by_x = 0, by_y = 0;
@@ -131,7 +135,8 @@ double SlideJacobian::bound_of_soft_response(const Terms& x) const {
   auto v = soft.stretched(v_n, v_e, v_d);
   const Vector of_soft = soft_turning(x), of_lean = leans_ ? lean_turning(x) : Vector{};
   for (std::size_t i = 0; i < 3; ++i) v[i] = v[i] + of_soft[i] + of_lean[i];
-  if (is_zero(v[0]) && is_zero(v[1]) && is_zero(v[2])) return kRoundingFactor * x.norm_M0;
+  if (slide::is_zero(v[0]) && slide::is_zero(v[1]) && slide::is_zero(v[2]))
+    return kRoundingFactor * x.norm_M0;
   if (!(x.rate.low > 0)) return kInfinity;
   const Range zero{}, fixed_d = square(soft.det) * x.r.h_over_rho;
   // M_0 + v (-m, l, m_s)/rate, and with another v over l for a slide that is too long

@@ -13,8 +13,8 @@
 namespace palpate::fitting {
 namespace {
 
-/// Of random states of random triangles, which `shape` makes of another kind: how many have steps
-/// as steep as `fraction` of the bound of their state; none is steeper.
+/// How many random states of random triangles, which `shape` makes of another kind, have steps as
+/// steep as `fraction` of the bound of the state. None is steeper than the bound.
 template <class Shape>
 int steep_states(std::mt19937& engine, int trials, double fraction, const Shape& shape) {
   int alike = 0;
