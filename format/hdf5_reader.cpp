@@ -221,6 +221,10 @@ Reader::Reader(fs::path file, std::string remedy) : state_(std::make_unique<Stat
   require_readable_file(path, state_->remedy);
   require_unbroken_seal(path, state_->remedy);
   if (H5Fis_hdf5(path.c_str()) == 0) {
+    if (path.extension() == ".toml") {
+      throw Error(ErrorKind::Configuration, path.string(), "is a case, not an HDF5 file",
+                  "give the file that 'palpate build " + path.string() + "' writes");
+    }
     throw Error(ErrorKind::Configuration, path.string(), "is not an HDF5 file", state_->remedy);
   }
   state_->file = Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);

@@ -15,8 +15,13 @@ namespace {
 
 constexpr std::size_t kMemoryStep = std::size_t{1} << 20;
 constexpr unsigned kDeflateLevel = 4;
-/// Bytes from which deflating pays: chunks take some 2 kB to find them.
-constexpr std::size_t kWorthDeflating = std::size_t{6} << 10;
+/// Bytes from which deflating pays: finding the chunks of a dataset takes some hundreds of bytes.
+constexpr std::size_t kWorthDeflating = std::size_t{1} << 10;
+/// Half the branches of the trees that find chunks and members of groups. The 32 and 16 of HDF5
+/// would take 2 kB a dataset and half a kB a group, as nodes are written whole.
+constexpr unsigned kChunkBranches = 4;
+constexpr unsigned kMemberBranches = 2;
+constexpr unsigned kMembersOfALeaf = 4;
 
 enum class Storage { Contiguous, Deflated };
 
@@ -72,6 +77,7 @@ struct Writer::State {
     const hsize_t extent = count;
     return checked(H5Screate_simple(1, &extent, nullptr), H5Sclose, where);
   }
+  Handle file_properties() const;
   Handle creation_properties(const std::string& path, Storage storage,
                              const std::vector<hsize_t>& extent) const;
   Handle make_dataset(const std::string& path, Scalar scalar, std::uint64_t rows,
@@ -92,12 +98,20 @@ Handle Writer::State::creation_properties(const std::string& path, Storage stora
   return properties;
 }
 
+Handle Writer::State::file_properties() const {
+  Handle properties = checked(H5Pcreate(H5P_FILE_CREATE), H5Pclose, "/");
+  check(H5Pset_istore_k(properties.get(), kChunkBranches), "/");
+  check(H5Pset_sym_k(properties.get(), kMemberBranches, kMembersOfALeaf), "/");
+  return properties;
+}
+
 Writer::Writer(std::filesystem::path target) : state_(std::make_unique<State>()) {
   state_->target = std::move(target);
+  const Handle properties = state_->file_properties();
   const Handle access = state_->checked(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "/");
   state_->check(H5Pset_fapl_core(access.get(), kMemoryStep, false), "/");
   state_->file = state_->checked(
-      H5Fcreate(state_->target.filename().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()),
+      H5Fcreate(state_->target.filename().c_str(), H5F_ACC_TRUNC, properties.get(), access.get()),
       H5Fclose, "/");
 }
 
@@ -105,8 +119,9 @@ Writer::Writer(std::filesystem::path target, OnDisk room) : state_(std::make_uni
   state_->target = std::move(target);
   state_->disk.emplace(state_->target);
   state_->disk->reserve(room.bytes);
+  const Handle properties = state_->file_properties();
   state_->file = state_->checked(
-      H5Fcreate(state_->disk->temporary().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT),
+      H5Fcreate(state_->disk->temporary().c_str(), H5F_ACC_TRUNC, properties.get(), H5P_DEFAULT),
       H5Fclose, "/");
   state_->disk->reserve(room.bytes);  // once more: HDF5 has emptied the file
 }

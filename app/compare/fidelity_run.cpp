@@ -15,6 +15,7 @@
 #include "app/pipeline/stage_input.hpp"
 #include "fitting/fidelity/skin.hpp"
 #include "fitting/fidelity/skin_error.hpp"
+#include "fitting/response/response_surface.hpp"
 #include "format/crash_safe_file.hpp"
 #include "format/error.hpp"
 #include "format/number_text.hpp"
@@ -109,10 +110,7 @@ class ComparedDepths {
 
 /// The points must lie on the surface of every library.
 void require_same_surface(const Library& library, const Body& body, const fs::path& file) {
-  bool same = library.positions.size() == body.response.node.size();
-  for (std::size_t v = 0; same && v < library.positions.size(); ++v)
-    same = library.positions[v] == body.nodes[static_cast<std::size_t>(body.response.node[v])];
-  if (same) return;
+  if (fitting::has_surface_of(body, library)) return;
   throw Error(ErrorKind::Configuration, file.string(),
               "its surface differs from that of the body of the case",
               "compare a library that was fitted on this body");

@@ -12,6 +12,7 @@
 #include "fitting/response/interpolate.hpp"
 #include "fitting/response/lean.hpp"
 #include "fitting/response/relaxation_fraction.hpp"
+#include "fitting/response/response_surface.hpp"
 #include "fitting/response/site_samples.hpp"
 #include "fitting/response/soft_axis.hpp"
 #include "format/error.hpp"
@@ -156,22 +157,12 @@ NodeResponse fit_site(const SiteCurves& site, const Vec3& inward, PressingTool t
   return node;
 }
 
-/// The response surface without the triangles that touch a support. Vertices keep their numbers.
 Library surface_library(const Body& body, const Curves& curves) {
   Library library;
   library.name = body.name;
   library.tool_shape = curves.tool.shape;
   library.tool_radius = curves.tool.radius;
-  library.inward = body.response.inward;
-  for (const std::int32_t node : body.response.node) {
-    library.positions.push_back(body.nodes[static_cast<std::size_t>(node)]);
-  }
-  for (const Triangle& triangle : body.response.triangles) {
-    const bool pressable = std::all_of(triangle.begin(), triangle.end(), [&](std::int32_t v) {
-      return body.response.is_site[static_cast<std::size_t>(v)] != 0;
-    });
-    if (pressable) library.triangles.push_back(triangle);
-  }
+  set_response_surface(body, library);
   library.responses.resize(library.positions.size());
   library.provenance = curves.provenance;
   library.relaxation_times = curves.relaxation.times_s;

@@ -2,6 +2,8 @@
 // The reader on a small file; on whole artifacts it is tested by damage, rejection and attributes.
 #include <gtest/gtest.h>
 
+#include <fstream>
+
 #include "format/hdf5_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/unit/format/refusal.hpp"
@@ -67,6 +69,17 @@ TEST_F(Hdf5Reader, RefusesAnotherArtifactAndAnUnknownSchema) {
   expect_refused([&] { reader_->require_artifact("palpate.body", {2}); }, "a.h5", "palpate.sample");
   expect_refused([&] { reader_->require_artifact("palpate.sample", {1}); }, "a.h5", "2");
   expect_refused([&] { reader_->require_artifact("palpate.sample", {3}); }, "a.h5", "2");
+}
+
+/// A case in the place of what is made from it: the remedy says which file to give.
+TEST_F(Hdf5Reader, TellsACaseFromABrokenFile) {
+  for (const char* name : {"case.toml", "case.h5"}) {
+    const bool is_case = std::string(name) == "case.toml";
+    const auto file = folder_ / name;
+    std::ofstream(file) << "name = 'pad'\n";
+    expect_refused([&] { Reader(file, "make it again"); }, file.string(),
+                   is_case ? "is a case, not an HDF5 file" : "is not an HDF5 file");
+  }
 }
 
 TEST_F(Hdf5Reader, RefusesWhatIsNotThere) {

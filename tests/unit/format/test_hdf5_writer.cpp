@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <hdf5.h>
 
+#include <random>
+
 #include "format/hdf5_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/unit/format/refusal.hpp"
@@ -103,6 +105,21 @@ TEST_F(Hdf5Writer, DeflatesWhatIsLong) {
   EXPECT_EQ(Raw(file_, "/long").numbers(rising.size()), rising);
   EXPECT_EQ(Raw(file_, "/short").layout(), H5D_CONTIGUOUS);
   EXPECT_LT(std::filesystem::file_size(file_), 4 * rising.size());
+}
+
+/// A library has some forty datasets: what HDF5 adds to each must not outweigh small ones.
+TEST_F(Hdf5Writer, AddsLessThanAKilobyteToADataset) {
+  std::mt19937_64 engine(1);
+  std::vector<std::uint8_t> noise(2000);
+  for (std::uint8_t& byte : noise) byte = static_cast<std::uint8_t>(engine());
+  const auto size_of = [&](int datasets) {
+    Writer writer(file_);
+    for (int i = 0; i < datasets; ++i)
+      writer.dataset<std::uint8_t>("/noise" + std::to_string(i), noise, {"1", "Noise."});
+    writer.commit();
+    return std::filesystem::file_size(file_);
+  };
+  EXPECT_LT(size_of(60) - size_of(20), 40 * (noise.size() + 1000));
 }
 
 /// Equal content gives equal bytes, in memory or on the disk.
