@@ -34,16 +34,16 @@ void control(benchmark::State& state) {
 
 BENCHMARK(control)->Iterations(kPasses)->UseManualTime()->Unit(benchmark::kMicrosecond);
 
-/// n = 8, 25, 79, 250: 512, 5 000, 49 928 and 500 000 triangles; then coupled responses, and both
-/// kinds with three relaxation times, while the tool presses and slides. Then the smallest body
-/// while it only presses, and while it only slides.
+/// n = 8, 25, 79, 250: 512, 5 000, 49 928 and 500 000 triangles; then coupled responses, both kinds
+/// with three relaxation times, and coupled ones that lean and have soft axes, while the tool
+/// presses and slides. Then the smallest body while it only presses, and while it only slides.
 void steps(benchmark::internal::Benchmark* bench) {
   constexpr auto kBoth = static_cast<std::int64_t>(Motion::Both);
   for (const std::int64_t n : {8, 25, 79, 250}) bench->Args({n, 0, kBoth});
-  for (const std::int64_t variant : {1, 2, 3})
+  for (const std::int64_t variant : {1, 4, 2, 3, 5})
     for (const std::int64_t n : {8, 79}) bench->Args({n, variant, kBoth});
   for (const Motion motion : {Motion::Press, Motion::Slide})
-    for (const std::int64_t variant : {0, 1, 2, 3})
+    for (const std::int64_t variant : {0, 1, 4, 2, 3, 5})
       bench->Args({8, variant, static_cast<std::int64_t>(motion)});
 }
 

@@ -2,6 +2,8 @@
 #include "bench/runtime/step_on_sphere.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -25,14 +27,43 @@ Library relaxing(Library library) {
   return library;
 }
 
+/// Across the press direction, as long as on a liver, turning from node to node.
+std::array<float, 3> tangent(const Vec3& inward, std::size_t v, double length) {
+  const Vec3 turning{std::cos(static_cast<double>(v)), std::sin(static_cast<double>(v)), 0.3};
+  const Vec3 across = turning - dot(turning, inward) * inward;
+  const Vec3 t = (length / norm(across)) * across;
+  return {static_cast<float>(t[0]), static_cast<float>(t[1]), static_cast<float>(t[2])};
+}
+
+Library with_axes(Library library) {
+  for (std::size_t v = 0; v < library.responses.size(); ++v) {
+    library.responses[v].lean = tangent(library.inward[v], v, 0.02);
+    library.responses[v].soft_axis = tangent(library.inward[v], v + 1, 0.25);
+  }
+  return library;
+}
+
+struct Variant {
+  ResponseKind kind;
+  bool relaxes, has_axes;
+};
+
+/// By range(1).
+constexpr Variant kVariants[] = {
+    {ResponseKind::Decoupled, false, false}, {ResponseKind::Coupled, false, false},
+    {ResponseKind::Decoupled, true, false},  {ResponseKind::Coupled, true, false},
+    {ResponseKind::Coupled, false, true},    {ResponseKind::Coupled, true, true}};
+
 /// The libraries are large; each is made once.
-const palpate_library& body_of(int n, std::int64_t variant) {
+const palpate_library& body_of(int n, std::int64_t number) {
   static std::map<std::pair<int, std::int64_t>, std::unique_ptr<palpate_library>> made;
-  auto& body = made[{n, variant}];
+  auto& body = made[{n, number}];
   if (!body) {
-    const auto kind = variant % 2 == 0 ? ResponseKind::Decoupled : ResponseKind::Coupled;
-    Library library = octasphere(n, kind);
-    body = std::make_unique<palpate_library>(variant < 2 ? library : relaxing(library));
+    const Variant& variant = kVariants[number];
+    Library library = octasphere(n, variant.kind);
+    if (variant.relaxes) library = relaxing(std::move(library));
+    if (variant.has_axes) library = with_axes(std::move(library));
+    body = std::make_unique<palpate_library>(library);
   }
   return *body;
 }

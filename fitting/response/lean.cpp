@@ -7,19 +7,20 @@
 #include <cstddef>
 
 #include "fitting/response/site_samples.hpp"
+#include "format/tangent_frame.hpp"
 
 namespace palpate::fitting {
 namespace {
 
 constexpr double kLightTouch = 0.02;  // of the largest normal force: weights grow no further below
-constexpr int kSections = 32;         // golden sections of the length of a lean
-constexpr int kSteps = 64;            // of a press
+constexpr int kGaussNewtonSteps = 6;  // the forces are almost linear in the lean
+constexpr double kDifference = 1e-3;  // of leans, for the derivatives
 constexpr double kLeastSpan = 0.01;   // of squared forces across the strongest drags, to theirs
 
 /// A sample of a straight press.
 struct Press {
   double depth = 0;
-  Vec3 transverse{};  ///< N
+  Vec3 transverse{};  ///< N, since the first sample
   double weight = 0;  ///< 1/N^2: differences count relative to the normal force
 };
 
@@ -35,69 +36,38 @@ std::vector<Press> presses_of(const SiteCurves& site, const Vec3& inward) {
       largest = std::max(largest, normal);
     }
   }
+  // What touches within an increment is tied where it would touch without friction. In the first
+  // one all of the contact does, so that half of the shear can be missing.
+  const Vec3 first = presses.empty() ? Vec3{} : presses.front().transverse;
   for (Press& press : presses) {
+    press.transverse = press.transverse - first;
     const double scale = std::max(press.weight, kLightTouch * largest);
     press.weight = 1 / (scale * scale);
   }
   return presses;
 }
 
-/// Against the mean of the transverse forces; zero without any.
-Vec3 direction_of(const std::vector<Press>& presses) {
-  Vec3 sum{};
-  for (const Press& press : presses) sum = sum - std::sqrt(press.weight) * press.transverse;
-  const double length = norm(sum);
-  return length > 0 ? (1 / length) * sum : Vec3{};
-}
-
 std::array<float, 3> single(const Vec3& v) {
   return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
 }
 
-double misfit(const std::vector<Press>& presses, NodeResponse node, ResponseKind kind,
-              const Vec3& lean) {
+/// The transverse forces of straight presses with that lean, since the first.
+std::vector<Vec3> transverse_forces(const std::vector<Press>& presses, NodeResponse node,
+                                    ResponseKind kind, const Vec3& lean) {
   node.lean = single(lean);
   const LeaningResponse response(node, kind);
-  double sum = 0;
-  for (const Press& press : presses) {
-    const Vec3 difference = response.transverse_force(press.depth) - press.transverse;
-    sum += press.weight * dot(difference, difference);
-  }
-  return sum;
-}
-
-/// Where a function of the length is least, by golden sections of [0, longest].
-template <class Function>
-double least(const Function& function, double longest) {
-  const double ratio = (std::sqrt(5.0) - 1) / 2;
-  double low = 0, high = longest;
-  double a = high - ratio * (high - low), b = low + ratio * (high - low);
-  double at_a = function(a), at_b = function(b);
-  for (int i = 0; i < kSections; ++i) {
-    if (at_a <= at_b) {
-      high = b;
-      b = a;
-      at_b = at_a;
-      at_a = function(a = high - ratio * (high - low));
-    } else {
-      low = a;
-      a = b;
-      at_a = at_b;
-      at_b = function(b = low + ratio * (high - low));
-    }
-  }
-  return 0.5 * (low + high);
+  std::vector<Vec3> forces;
+  forces.reserve(presses.size());
+  for (const Press& press : presses)
+    forces.push_back(response.transverse_force(press.depth) -
+                     response.transverse_force(presses.front().depth));
+  return forces;
 }
 
 /// w of a node at a depth; 1 where responses are decoupled.
 double weight_of(const runtime::CompiledCurve& coupling, double z) {
   if (coupling.pieces().empty()) return 1;
   return coupling.weight(z);
-}
-
-runtime::CompiledCurve coupling_of(const NodeResponse& node, ResponseKind kind) {
-  if (kind == ResponseKind::Decoupled) return {};
-  return {node.coupling.curve, static_cast<double>(node.coupling.base)};
 }
 
 /// The drags at one lateral depth, over the normal force there: rows w f_t and f_n, changes of the
@@ -148,121 +118,103 @@ std::vector<DragsAtDepth> drags_of(const SiteCurves& site, const Vec3& inward,
   return drags;
 }
 
-}  // namespace
+/// Normal equations of a lean: squares . sigma = right.
+struct LeanEquations {
+  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+};
 
-LeaningResponse::LeaningResponse(const NodeResponse& node, ResponseKind kind)
-    : lateral_(node.lateral), coupling_(coupling_of(node, kind)) {
-  soft_axis_ = vec3_of(node.soft_axis);
-  lean_ = vec3_of(node.lean);
-  stretched_lean_ = stretch(lean_);
-  length_ = norm(stretched_lean_);
-}
-
-runtime::CurveValue LeaningResponse::weight(double z) const {
-  if (coupling_.pieces().empty()) return {1, 0, 0};
-  if (!(z > 0)) return {coupling_.weight(0), 0, 0};
-  return coupling_.evaluate(z);
-}
-
-/// d|p|/dz = w |S sigma| - (w'/w) h/h': the force w h grows with the lateral deflection alone.
-double LeaningResponse::lateral_rate(double z, double lateral) const {
-  const runtime::CurveValue w = weight(z), h = lateral_.evaluate(lateral);
-  if (!(h.slope > 0)) return w.force * length_;
-  return w.force * length_ - w.slope / w.force * h.force / h.slope;
-}
-
-/// By the method of Heun.
-LeaningResponse::Press LeaningResponse::press(double z) const {
-  Press at;
-  if (!(length_ > 0 && z > 0)) return at;
-  const double step = z / kSteps;
-  for (int k = 0; k < kSteps; ++k) {
-    const double start = k * step, end = start + step;
-    const double before = weight(start).force * at.force;
-    const double rate = lateral_rate(start, at.lateral);
-    const double guess = std::max(0.0, at.lateral + step * rate);
-    at.lateral += 0.5 * step * (rate + lateral_rate(end, guess));
-    at.lateral = std::max(0.0, at.lateral);
-    const double w = weight(end).force;
-    at.force = w * lateral_.force(at.lateral);
-    at.energy += 0.5 * step * length_ * (before + w * at.force);
+LeanEquations equations_of_drags(const SiteCurves& site, const Vec3& inward,
+                                 const NodeResponse& node, ResponseKind kind) {
+  LeanEquations equations;
+  for (DragsAtDepth& at : drags_of(site, inward, coupling_of(node, kind))) {
+    at.remove_square();
+    for (std::size_t i = 0; i < at.normal.size(); ++i) {
+      const Eigen::Map<const Eigen::Vector3d> row(at.sheared[i].data());
+      equations.squares += row * row.transpose();
+      equations.right -= at.normal[i] * row;
+    }
   }
-  return at;
+  return equations;
 }
 
-double LeaningResponse::energy(double z) const {
-  return press(z).energy;
+/// Absent where the equations leave one of the two directions across the press open; along it
+/// there is no shear.
+std::optional<Vec3> solved(const LeanEquations& equations, const Vec3& inward) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(equations.squares);
+  const Eigen::Vector3d& strength = eigen.eigenvalues();  // ascending
+  if (!(strength[2] > 0 && strength[1] > kLeastSpan * strength[2])) return std::nullopt;
+  Eigen::Vector3d lean = Eigen::Vector3d::Zero();
+  for (const int i : {1, 2})
+    lean += eigen.eigenvectors().col(i).dot(equations.right) / strength[i] *
+            eigen.eigenvectors().col(i);
+  const Vec3 sigma{lean[0], lean[1], lean[2]};
+  return sigma - dot(sigma, inward) * inward;
 }
 
-double LeaningResponse::normal_force(double z) const {
-  return length_ * weight(z).force * press(z).force;
+/// Adds those of the presses, linearised at a lean.
+void add_presses(const std::vector<Press>& presses, const Vec3& inward, const NodeResponse& node,
+                 ResponseKind kind, const Vec3& lean, LeanEquations& equations) {
+  const auto here = transverse_forces(presses, node, kind, lean);
+  const std::array<Vec3, 2> across = tangent_frame(inward);
+  const Eigen::Map<const Eigen::Vector3d> sigma(lean.data());
+  std::array<std::vector<Vec3>, 2> moved;
+  for (std::size_t i = 0; i < 2; ++i)
+    moved[i] = transverse_forces(presses, node, kind, lean + kDifference * across[i]);
+  for (std::size_t k = 0; k < presses.size(); ++k) {
+    Eigen::Matrix3d slope = Eigen::Matrix3d::Zero();
+    for (std::size_t i = 0; i < 2; ++i) {
+      const Vec3 change = (1 / kDifference) * (moved[i][k] - here[k]);
+      slope += Eigen::Map<const Eigen::Vector3d>(change.data()) *
+               Eigen::Map<const Eigen::Vector3d>(across[i].data()).transpose();
+    }
+    const Vec3 missing = presses[k].transverse - here[k];
+    equations.squares += presses[k].weight * slope.transpose() * slope;
+    equations.right += presses[k].weight * slope.transpose() *
+                       (Eigen::Map<const Eigen::Vector3d>(missing.data()) + slope * sigma);
+  }
 }
 
-Vec3 LeaningResponse::transverse_force(double z) const {
-  if (!(length_ > 0)) return {};
-  return (-press(z).force / length_) * stretch(stretched_lean_);
+Vec3 at_most(double longest, const Vec3& lean) {
+  const double length = norm(lean);
+  return length > longest ? (longest / length) * lean : lean;
 }
 
-double LeaningResponse::drag_force(double z, double d, const Vec3& direction) const {
-  const Press at = press(z);
-  const Vec3 before = length_ > 0 ? (-at.lateral / length_) * stretched_lean_ : Vec3{};
-  const Vec3 along = stretch(direction);
-  const Vec3 p = before + d * along;
-  const double rho = norm(p);
-  const double dragged = rho > 0 ? weight(z).force * lateral_.force(rho) * dot(p, along) / rho : 0;
-  const double leaning = at.lateral > 0 ? at.force * dot(before, along) / at.lateral : 0;
-  return dragged - leaning;
-}
-
-namespace {
-
-/// The lean of straight presses, at most this long.
+/// The lean of the presses of a tool that sticks, and of the drags where they tell it, by Gauss and
+/// Newton.
 Vec3 lean_of_presses(const SiteCurves& site, const Vec3& inward, const NodeResponse& node,
                      ResponseKind kind, double longest) {
   const std::vector<Press> presses = presses_of(site, inward);
-  const Vec3 direction = direction_of(presses);
-  if (direction == Vec3{}) return {};
-  const auto function = [&](double s) { return misfit(presses, node, kind, s * direction); };
-  return least(function, longest) * direction;
+  LeanEquations drags = equations_of_drags(site, inward, node, kind);
+  const auto of_drags = solved(drags, inward);
+  if (!of_drags) drags = {};
+  Vec3 lean = at_most(longest, of_drags.value_or(Vec3{}));
+  for (int i = 0; i < kGaussNewtonSteps; ++i) {
+    LeanEquations all = drags;
+    add_presses(presses, inward, node, kind, lean, all);
+    const auto better = solved(all, inward);
+    if (!better) return lean;
+    lean = at_most(longest, *better);
+  }
+  return lean;
 }
 
 }  // namespace
 
 std::optional<Vec3> lean_of_drags(const SiteCurves& site, const Vec3& inward,
                                   const NodeResponse& node, ResponseKind kind) {
-  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d right = Eigen::Vector3d::Zero();
-  for (DragsAtDepth& at : drags_of(site, inward, coupling_of(node, kind))) {
-    at.remove_square();
-    for (std::size_t i = 0; i < at.normal.size(); ++i) {
-      const Eigen::Map<const Eigen::Vector3d> row(at.sheared[i].data());
-      squares += row * row.transpose();
-      right -= at.normal[i] * row;
-    }
-  }
-  // Across the press two of three directions are to be known; along it there is no shear.
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(squares);
-  const Eigen::Vector3d& strength = eigen.eigenvalues();  // ascending
-  if (!(strength[2] > 0 && strength[1] > kLeastSpan * strength[2])) return std::nullopt;
-  Eigen::Vector3d lean = Eigen::Vector3d::Zero();
-  for (const int i : {1, 2})
-    lean += eigen.eigenvectors().col(i).dot(right) / strength[i] * eigen.eigenvectors().col(i);
-  const Vec3 sigma{lean[0], lean[1], lean[2]};
-  return sigma - dot(sigma, inward) * inward;
+  return solved(equations_of_drags(site, inward, node, kind), inward);
 }
 
 std::array<float, 3> fit_lean(const SiteCurves& site, const Vec3& inward, const NodeResponse& node,
                               ResponseKind kind, PressingTool tool) {
   const double w = kind == ResponseKind::Coupled ? node.coupling.largest() : 1;
   const double longest = kMostFittedLean / w;
-  Vec3 lean{};
-  if (const auto of_drags = lean_of_drags(site, inward, node, kind))
-    lean = *of_drags;
-  else if (tool == PressingTool::Sticks)
-    lean = lean_of_presses(site, inward, node, kind, longest);
-  const double length = norm(lean);
-  if (length > longest) lean = (longest / length) * lean;
-  return w * length >= kLeastLean ? single(lean) : std::array<float, 3>{};
+  const Vec3 lean =
+      tool == PressingTool::Sticks
+          ? lean_of_presses(site, inward, node, kind, longest)
+          : at_most(longest, lean_of_drags(site, inward, node, kind).value_or(Vec3{}));
+  return w * norm(lean) >= kLeastLean ? single(lean) : std::array<float, 3>{};
 }
 
 /// The mean of the force is the change of the energy over the travel.
