@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "fitting/response/response_surface.hpp"
 #include "format/error.hpp"
 #include "format/flat_library.hpp"
 #include "mesher/read/read_off.hpp"
@@ -13,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kSame = 1e-9;  // m, between a vertex of the file and that of the library
+constexpr double kSame = 1e-9;  // m, between a vertex of the file and the library, beside its grid
 
 std::vector<Triangle> triangles_of(const mesher::Soup& soup, const fs::path& file) {
   std::vector<Triangle> triangles;
@@ -29,9 +30,10 @@ std::vector<Triangle> triangles_of(const mesher::Soup& soup, const fs::path& fil
 
 std::vector<Triangle> response_triangles(const fs::path& file, const Library& library) {
   const mesher::Soup soup = mesher::read_off(content_of(file), file.string());
+  const double tolerance = kSame + fitting::grid_of(soup.points);
   bool same = soup.points.size() == library.positions.size();
   for (std::size_t v = 0; same && v < soup.points.size(); ++v)
-    same = norm(soup.points[v] - library.positions[v]) <= kSame;
+    same = norm(soup.points[v] - library.positions[v]) <= tolerance;
   if (!same)
     refuse(file.string(), "its vertices are not those of the library beside it",
            "write it anew with `palpate export surface`");

@@ -24,13 +24,6 @@ double extent_of(const std::vector<Vec3>& points) {
   return extent;
 }
 
-/// The step of on_a_grid; 0 where all points are one.
-double grid_of(const std::vector<Vec3>& points) {
-  const double extent = extent_of(points);
-  if (!(extent > 0)) return 0;
-  return std::ldexp(1.0, static_cast<int>(std::ceil(std::log2(extent))) - kCoordinateBits);
-}
-
 std::vector<Vec3> response_points(const Body& body) {
   std::vector<Vec3> points;
   points.reserve(body.response.node.size());
@@ -52,6 +45,12 @@ bool is_pressed(const Body& body, const Triangle& triangle) {
 }
 
 }  // namespace
+
+double grid_of(const std::vector<Vec3>& points) {
+  const double extent = extent_of(points);
+  if (!(extent > 0)) return 0;
+  return std::ldexp(1.0, static_cast<int>(std::ceil(std::log2(extent))) - kCoordinateBits);
+}
 
 std::vector<Vec3> on_a_grid(std::vector<Vec3> points) {
   const double grid = grid_of(points);

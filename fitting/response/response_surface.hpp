@@ -14,9 +14,11 @@ namespace palpate::fitting {
 /// take no room in a file, where coordinates would be half of a library.
 inline constexpr int kCoordinateBits = 24;
 
-/// The points on a grid of h = 2^-kCoordinateBits of the power of two at or above the extent of the
-/// surface, the longest side of its box: each within h/2 along each axis, 3e-8 of the extent at
-/// most.
+/// h = 2^-kCoordinateBits of the power of two at or above the extent of a surface, the longest side
+/// of its box; 0 where all points are one.
+double grid_of(const std::vector<Vec3>& points);
+
+/// The points on a grid of h: each within h/2 along each axis, 6e-8 of the extent at most.
 std::vector<Vec3> on_a_grid(std::vector<Vec3> points);
 
 /// Sets positions, inward directions and triangles of the library: those of the body without the

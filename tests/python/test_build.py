@@ -57,7 +57,8 @@ class Case(unittest.TestCase):
 
     def test_artifacts_fit_together(self):
         body = palpate.read_body(self.built.body)
-        self.assertTrue(np.array_equal(self.library.vertices, body.nodes[body.response_nodes]))
+        nodes = body.nodes[body.response_nodes]  # of which a library has 24 bits
+        self.assertLess(np.abs(self.library.vertices - nodes).max(), np.ptp(nodes, axis=0).max() / 2**24)
         self.assertEqual({site.vertex for site in self.curves.sites}, set(np.flatnonzero(body.is_site)))
         self.assertEqual({site.vertex for site in self.curves.sites}, set(np.flatnonzero(self.library.vertex_status == 0)))
         stages = [step.stage for step in self.library.provenance]
