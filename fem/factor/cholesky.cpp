@@ -4,7 +4,6 @@
 #include <cblas.h>
 #include <malloc.h>
 #include <omp.h>
-#include <signal.h>
 #include <suitesparse/SuiteSparse_config.h>
 #include <suitesparse/cholmod.h>
 
@@ -147,30 +146,7 @@ Cholesky::Cholesky(const SparsePattern& pattern, const std::vector<int>* permuta
   impl_->analyze(A, &order);
 }
 
-namespace {
-
-/// Keeps a signal that is to end the process until METIS has given its handlers back: METIS takes
-/// SIGTERM for an error of its own and says that there is no memory.
-class WithoutSigterm {
- public:
-  WithoutSigterm() {
-    sigset_t signals;
-    sigemptyset(&signals);
-    sigaddset(&signals, SIGTERM);
-    pthread_sigmask(SIG_BLOCK, &signals, &before_);
-  }
-  ~WithoutSigterm() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
-  WithoutSigterm(const WithoutSigterm&) = delete;
-  WithoutSigterm& operator=(const WithoutSigterm&) = delete;
-
- private:
-  sigset_t before_{};
-};
-
-}  // namespace
-
 std::vector<int> nested_dissection(const SparsePattern& pattern) {
-  const WithoutSigterm until_the_end;
   cholmod_common common = started_common();
   cholmod_sparse A{};
   A.nrow = A.ncol = static_cast<std::size_t>(pattern.n);

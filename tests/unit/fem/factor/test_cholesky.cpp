@@ -2,12 +2,8 @@
 #include "fem/factor/cholesky.hpp"
 
 #include <gtest/gtest.h>
-#include <signal.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <csignal>
-#include <thread>
 
 #include "tests/unit/fem/factor/assembled_block.hpp"
 
@@ -41,43 +37,6 @@ TEST(Cholesky, EliminatesTheLastUnknownsLast) {
     const std::vector<int> found = factor.last_unknowns();
     EXPECT_TRUE(std::is_permutation(found.begin(), found.end(), last.begin(), last.end()));
   }
-}
-
-/// Lower triangle of the seven-point stencil on a grid of n^3 points.
-SparsePattern stencil(int n) {
-  SparsePattern pattern;
-  pattern.n = n * n * n;
-  pattern.start = {0};
-  for (int i = 0; i < pattern.n; ++i) {
-    pattern.row.push_back(i);
-    if ((i + 1) % n != 0) pattern.row.push_back(i + 1);
-    if ((i / n + 1) % n != 0) pattern.row.push_back(i + n);
-    if (i + n * n < pattern.n) pattern.row.push_back(i + n * n);
-    pattern.start.push_back(static_cast<int>(pattern.row.size()));
-  }
-  return pattern;
-}
-
-/// Ends the process by SIGTERM as soon as somebody else handles it.
-void terminate_when_metis_is_at_work() {
-  sigset_t sigterm;
-  sigemptyset(&sigterm);
-  sigaddset(&sigterm, SIGTERM);
-  pthread_sigmask(SIG_BLOCK, &sigterm, nullptr);
-  struct sigaction now {};
-  do sigaction(SIGTERM, nullptr, &now);
-  while (now.sa_handler == SIG_DFL);
-  kill(getpid(), SIGTERM);
-}
-
-TEST(NestedDissection, LeavesSigtermToTheProcess) {
-  const SparsePattern pattern = stencil(40);
-  const auto order_and_be_terminated = [&] {
-    std::thread sender(terminate_when_metis_is_at_work);
-    nested_dissection(pattern);
-    sender.join();
-  };
-  EXPECT_EXIT(order_and_be_terminated(), ::testing::KilledBySignal(SIGTERM), "");
 }
 
 }  // namespace
