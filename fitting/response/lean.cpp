@@ -180,8 +180,8 @@ Vec3 at_most(double longest, const Vec3& lean) {
   return length > longest ? (longest / length) * lean : lean;
 }
 
-/// The lean of the presses of a tool that sticks, and of the drags where they tell it, by Gauss and
-/// Newton.
+/// The lean of the presses of a tool that sticks, and of the drags where they tell it, by the
+/// Gauss-Newton method.
 Vec3 lean_of_presses(const SiteCurves& site, const Vec3& inward, const NodeResponse& node,
                      ResponseKind kind, double longest) {
   const std::vector<Press> presses = presses_of(site, inward);
