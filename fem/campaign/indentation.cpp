@@ -30,6 +30,9 @@ constexpr std::size_t kAcrossIncrements = 2;
 /// error of its tool force. Only the picture of the skin comes from it, linear in the travel.
 constexpr double kAcrossTravel = 0.5;
 constexpr double kAcrossTolerance = 5e-3;
+/// Error of the tool force, over that of the settings, of the equilibrium that tells which points
+/// have touched in an increment of a no-slip press, and where. Another one follows with these tied.
+constexpr double kTouchTolerance = 5;
 
 double thread_cpu_seconds() {
   timespec now{};
@@ -88,7 +91,7 @@ struct SiteSolver::Site {
         touching(tool_at_first_touch(context, contact, body.rest(), point)),
         equilibrium(context, body, member),
         self_contact(body.mesh(), X, kWatched * context.indentation.tool.extent()),
-        volume_at_rest(body.whole().volume(body.rest())) {}
+        volume_at_rest(body.whole().energy(body.rest()).volume) {}
 
   /// The tool at a depth below first touch, moved sideways by `aside`.
   Tool tool_at(double depth, const Eigen::Vector3d& aside = Eigen::Vector3d::Zero()) const {
@@ -118,11 +121,15 @@ bool SiteSolver::press_to(Site& site, PathDriver& driver, const Increment& incre
                           Predictor& states, Displacement& u, CurveSample& sample,
                           std::string& reason) {
   const IncrementStart start{u, site.tool_at(increment.from).tip};
+  const bool no_slip = context_.indentation.friction == ToolFriction::NoSlip;
+  const double tolerance = context_.indentation.force_tolerance;
+  site.equilibrium.allow_error(no_slip ? kTouchTolerance * tolerance : tolerance);
   if (!driver.advance(increment.from, increment.to, states, u, sample, reason)) return false;
-  if (context_.indentation.friction != ToolFriction::NoSlip) return true;
+  if (!no_slip) return true;
+  site.equilibrium.allow_error(tolerance);
   const ToolContact before = site.contact;
   if (bond_observer_) bond_observer_(before, u, start);
-  if (!site.contact.bond_since(start, u)) return true;
+  site.contact.bond_since(start, u);
   if (driver.settle(increment.to, states, u, sample, reason)) return true;
   site.contact = before;
   return false;

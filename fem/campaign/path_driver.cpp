@@ -134,7 +134,7 @@ void PathDriver::record(double s, const Displacement& u, CurveSample& sample) co
   sample.force = to_vec3(contact.tool_force(u));
   sample.strain_energy = state.energy - problem_.energy_at_rest;
   if (problem_.relaxes) sample.isochoric_energy = problem_.model.isochoric_energies(u);
-  sample.volume_change = problem_.model.volume(u) - problem_.volume_at_rest;
+  sample.volume_change = state.volume - problem_.volume_at_rest;
   sample.min_jacobian = state.min_J;
   sample.penetration = contact.penetration(u);
   sample.contact_area = contact.contact_area(u);

@@ -75,8 +75,22 @@ auto with_law(const Solid& solid, const Block& block, const HistoryStress* step,
   return f(multipliers->augmented(law, block.region, block.element));
 }
 
+/// The values of eight elements.
+Lanes of_elements(const std::vector<double>& values, const std::array<int, kLanes>& element) {
+  Lanes some;
+  for (int lane = 0; lane < kLanes; ++lane) some[lane] = values[to_index(element[to_index(lane)])];
+  return some;
+}
+
 double smallest(const ElementKinematics<Lanes>& k) {
   return std::min({k.J[0].minCoeff(), k.J[1].minCoeff(), k.J[2].minCoeff(), k.J[3].minCoeff()});
+}
+
+/// m^3, of the elements in use as they are displaced.
+double volume_of(int count, const ElementGeometry<Lanes>& geometry,
+                 const ElementKinematics<Lanes>& k) {
+  const Lanes volume = geometry.volume * k.mean_J;
+  return volume.head(count).sum();
 }
 
 /// Exponential laws overflow long before an element inverts: such a state is inadmissible, too.
@@ -204,15 +218,6 @@ StressField SolidModel::isochoric_stress(const Displacement& u) const {
   return field;
 }
 
-double SolidModel::volume(const Displacement& u) const {
-  double sum = 0;
-  for (const Block& block : blocks_) {
-    const Lanes volume = block.geometry.volume * kinematics_of(block, u).mean_J;
-    sum += volume.head(block.count).sum();
-  }
-  return sum;
-}
-
 std::vector<double> SolidModel::isochoric_energies(const Displacement& u) const {
   std::vector<double> energies(solid_->laws.size(), 0.0);
   for (const Block& block : blocks_) {
@@ -235,6 +240,7 @@ SolidModel::State SolidModel::energy(const Displacement& u,
     const auto k = kinematics_of(block, u);
     state.min_J = std::min(state.min_J, smallest(k));
     if (!(state.min_J > 0)) return state;
+    state.volume += volume_of(block.count, block.geometry, k);
     const Lanes energy =
         with_law(*solid_, block, step(), multipliers, [&](const auto& law) -> Lanes {
           return element_energy(law, solid_->dilatation, block.geometry, k);
@@ -254,6 +260,7 @@ SolidModel::State SolidModel::forces(const Displacement& u, Eigen::VectorXd& f,
     const auto k = kinematics_of(block, u);
     state.min_J = std::min(state.min_J, smallest(k));
     if (!(state.min_J > 0)) return state;
+    state.volume += volume_of(block.count, block.geometry, k);
     with_law(*solid_, block, step(), multipliers, [&](const auto& law) {
       const Lanes energy = element_energy(law, solid_->dilatation, block.geometry, k);
       state.energy += energy.head(block.count).sum() + energy_of_history(block, k);
@@ -278,6 +285,7 @@ SolidModel::State SolidModel::forces(const Displacement& u, Eigen::VectorXd& f,
 template <class Kinematics>
 void SolidModel::assemble_stiffness(const Kinematics& kinematics_of, const HistoryStress* step,
                                     const DilatationMultipliers* multipliers,
+                                    const std::vector<double>& pressures_of_elements,
                                     std::vector<double>& values) const {
   values.assign(to_index(pattern_.nonzeros()), 0.0);
   ElementMatrix<Lanes> K;
@@ -286,8 +294,9 @@ void SolidModel::assemble_stiffness(const Kinematics& kinematics_of, const Histo
   for (const Block& block : blocks_) {
     const auto k = kinematics_of(block);
     with_law(*solid_, block, step, multipliers, [&](const auto& law) {
-      element_stiffness(law, solid_->dilatation, block.geometry, k,
-                        pressures(law, block, k, points), K);
+      PointPressures<Lanes> p = pressures(law, block, k, points);
+      if (!pressures_of_elements.empty()) p.fill(of_elements(pressures_of_elements, block.element));
+      element_stiffness(law, solid_->dilatation, block.geometry, k, p, K);
     });
     if (step != nullptr)
       add_history_stiffness(solid_->dilatation, block.geometry,
@@ -301,15 +310,38 @@ void SolidModel::assemble_stiffness(const Kinematics& kinematics_of, const Histo
 }
 
 void SolidModel::stiffness(const Displacement& u, std::vector<double>& values,
-                           const DilatationMultipliers* multipliers) const {
+                           const DilatationMultipliers* multipliers,
+                           const std::vector<double>& pressures) const {
   assemble_stiffness([&](const Block& block) { return kinematics_of(block, u); }, step(),
-                     multipliers, values);
+                     multipliers, pressures, values);
+}
+
+std::vector<double> SolidModel::foretold_pressures(const Displacement& from, const Displacement& to,
+                                                   const DilatationMultipliers* multipliers) const {
+  if (solid_->dilatation != Dilatation::Mean) return {};
+  std::vector<double> pressures(mesh().tetrahedra.size(), 0.0);
+  for (const Block& block : blocks_) {
+    const ElementVector<Lanes> start = gather(block, from), end = gather(block, to);
+    const ElementKinematics<Lanes> k = kinematics_of(block, start);
+    const ElementVector<Lanes> slope =  // of the volume
+        nodal_forces(block.geometry, [&](std::size_t q) { return k.cof[q]; });
+    Lanes change = Lanes::Zero();
+    for (std::size_t a = 0; a < kTetNodes; ++a)
+      for (std::size_t i = 0; i < 3; ++i) change += slope[a][i] * (end[a][i] - start[a][i]);
+    change /= block.geometry.volume;
+    const Lanes p = with_law(*solid_, block, step(), multipliers, [&](const auto& law) -> Lanes {
+      return law.pressure(k.mean_J) + law.pressure_slope(k.mean_J) * change;
+    });
+    for (int lane = 0; lane < block.count; ++lane)
+      pressures[to_index(block.element[to_index(lane)])] = p[lane];
+  }
+  return pressures;
 }
 
 void SolidModel::turned_stiffness(const Displacement& u, std::vector<double>& values) const {
   const DilatationMultipliers none = multipliers();
   assemble_stiffness([&](const Block& block) { return turned(block, u); }, nullptr,
-                     none.any() ? &none : nullptr, values);
+                     none.any() ? &none : nullptr, {}, values);
 }
 
 DilatationMultipliers SolidModel::multipliers() const {

@@ -65,6 +65,7 @@ class SolidModel {
 
   struct State {
     double energy = 0;  ///< J, strain energy and energy of the foundation less work of gravity
+    double volume = 0;  ///< m^3, of the elements as they are displaced
     /// Smallest det F at the Gauss points; 0 where the energy has no finite value. The rest is
     /// void when it is not positive.
     double min_J = 1;
@@ -75,9 +76,18 @@ class SolidModel {
   /// Internal forces on the unknowns, N, with those of the foundation, less the weight.
   State forces(const Displacement& u, Eigen::VectorXd& f,
                const DilatationMultipliers* multipliers = nullptr) const;
-  /// Values of pattern(), N/m.
+  /// Values of pattern(), N/m. `pressures`: of the elements, Pa, for the geometric part, in place
+  /// of those at `u`; empty: those at `u`.
   void stiffness(const Displacement& u, std::vector<double>& values,
-                 const DilatationMultipliers* multipliers = nullptr) const;
+                 const DilatationMultipliers* multipliers = nullptr,
+                 const std::vector<double>& pressures = {}) const;
+  /// The pressures of the elements at `to`, Pa, as those at `from` foretell them,
+  ///   p + d2U/dJ2 (dJbar/du) (to - from),
+  /// which are those of a Newton step with the pressures as unknowns. In the pressures at `to` the
+  /// bulk modulus multiplies what is quadratic in the step: after a long one they are far from
+  /// those of the equilibrium. Empty unless the pressures are those of the elements.
+  std::vector<double> foretold_pressures(const Displacement& from, const Displacement& to,
+                                         const DilatationMultipliers* multipliers = nullptr) const;
 
   /// Values of pattern(), N/m: the stiffness at rest of every element, turned with the element,
   ///   sum_e R_e K_e R_e^T,
@@ -95,8 +105,6 @@ class SolidModel {
 
   /// 2 dPsi_iso/dC of the laws at the Gauss points, Pa.
   StressField isochoric_stress(const Displacement& u) const;
-  /// m^3, of the elements as they are displaced.
-  double volume(const Displacement& u) const;
   /// The isochoric strain energy of each region, J. What remains of energy() does not relax.
   std::vector<double> isochoric_energies(const Displacement& u) const;
 
@@ -186,7 +194,7 @@ class SolidModel {
   template <class Kinematics>
   void assemble_stiffness(const Kinematics& kinematics_of, const HistoryStress* step,
                           const DilatationMultipliers* multipliers,
-                          std::vector<double>& values) const;
+                          const std::vector<double>& pressures, std::vector<double>& values) const;
 
   /// The step of its relaxation that the model is in; null where it is elastic.
   const HistoryStress* step() const {

@@ -12,8 +12,9 @@ namespace palpate::fem {
 
 namespace {
 
-/// Tolerance of the solve on the patch, over that of the increment.
-constexpr double kPatchTolerance = 0.1;
+/// Tolerance of the solve on the patch, over that of the increment; and the least, over the
+/// residual: a tool that has lost contact has no force to compare with.
+constexpr double kPatchTolerance = 0.1, kLeastPatchTolerance = 1e-6;
 
 /// What is added to the diagonal of S at most, over that of A. A pressed body is stable against the
 /// tool, not without it: S is often indefinite.
@@ -31,9 +32,13 @@ constexpr const char* kNotDefinite =
 constexpr double kStraight = 0.85;
 constexpr double kLongestStep = 64;
 
-/// Contraction of the residual in a step from which a factor is used again. A factor takes as long
-/// as some ten steps where the elements under the tool are refined (bench_precompute profile).
-constexpr double kGoodContraction = 0.5;
+/// Contraction of the residual in a step from which a factor is used again, and the largest
+/// residual over the tool force. Where the elements under the tool are refined a factor takes as
+/// long as three steps (bench_case_profile).
+constexpr double kGoodContraction = 0.5, kSmallResidual = 0.01;
+/// Part of the decrease of the energy that the model of a factor of another state foretells, which
+/// a step with it must reach.
+constexpr double kForetold = 0.5;
 
 /// A patch that is needed is taken instead of a larger one where it has less than this part of its
 /// unknowns: another analysis of the window takes as long as a factorization.
@@ -86,7 +91,9 @@ void NewtonSolver::choose_patch(const ToolContact& contact, const Displacement& 
 
 void NewtonSolver::raised_stiffness(const Displacement& u, double raised) {
   const PartTimer timer(Part::WindowPasses);
-  model_.stiffness(u, K_, multipliers_);
+  std::vector<double> pressures;
+  if (last_state_.cols() > 0) pressures = model_.foretold_pressures(last_state_, u, multipliers_);
+  model_.stiffness(u, K_, multipliers_, pressures);
   const auto& start = model_.pattern().start;
   for (std::size_t i = 0; i + 1 < start.size(); ++i) K_[to_index(start[i])] *= 1 + raised;
 }
@@ -120,11 +127,12 @@ bool NewtonSolver::factorize_as_precisely_as_needed() {
   return factor_->factorize(K_, Precision::Double);
 }
 
-bool NewtonSolver::factorize(const Displacement& u) {
+bool NewtonSolver::factorize(const ToolContact& contact, const Displacement& u) {
   const PartTimer timer(Part::WindowFactor);
   // Away from equilibrium a large pressure can make A indefinite beside the patch; raising its
   // diagonal still gives a direction of descent.
   constexpr std::array<double, 6> kRaised{0, 0.02, 0.1, 0.5, 2, 10};
+  tip_of_factor_ = contact.tool().tip;
   factorized_ = std::any_of(kRaised.begin(), kRaised.end(), [&](double raised) {
     raised_stiffness(u, raised);
     return factorize_as_precisely_as_needed();
@@ -171,24 +179,26 @@ std::optional<Eigen::VectorXd> NewtonSolver::direction(const ToolContact& contac
   return d;
 }
 
-bool NewtonSolver::line_search(const ToolContact& contact, const Eigen::VectorXd& d,
-                               Equilibrium& now, Displacement& u) const {
+bool NewtonSolver::line_search(const ToolContact& contact, const Eigen::VectorXd& d, bool stale,
+                               Equilibrium& now, Displacement& u) {
   const PartTimer timer(Part::WindowPasses);
   const double slope = now.residual.dot(d);
   const double norm = now.residual.norm();
+  const double least = stale ? kForetold / 2 : 1e-4;  // a whole step falls by half of the slope
   double step = 1;
-  for (int halvings = 0; halvings < 12; ++halvings, step *= 0.5) {
+  for (int halvings = 0; halvings < (stale ? 1 : 12); ++halvings, step *= 0.5) {
     Displacement trial = u;
     add_step(model_, step, d, trial);
     Equilibrium next = evaluate(model_, contact, trial, multipliers_);
     if (!(next.min_J > 0)) continue;
     const bool lower =
-        next.energy <= now.energy + 1e-4 * step * slope + kEnergyNoise * std::abs(now.energy);
+        next.energy <= now.energy + least * step * slope + kEnergyNoise * std::abs(now.energy);
     // Close to the minimum the energy is at its round-off: judge by the gradient as well.
     if (!lower && next.residual.norm() > (1 - 0.1 * step) * norm) continue;
     if (step == 1 && next.energy < now.energy + kStraight * slope)
       lengthen(contact, d, u, now.energy, slope, next, trial);
     u.swap(trial);
+    last_state_.swap(trial);
     now = std::move(next);
     return true;
   }
@@ -212,6 +222,16 @@ void NewtonSolver::lengthen(const ToolContact& contact, const Eigen::VectorXd& d
 
 NewtonResult NewtonSolver::solve(const ToolContact& contact, const NewtonOptions& options,
                                  Displacement& u) {
+  NewtonResult result = descend(contact, options, u);
+  if (result.converged)
+    last_state_ = u;
+  else
+    start_path();
+  return result;
+}
+
+NewtonResult NewtonSolver::descend(const ToolContact& contact, const NewtonOptions& options,
+                                   Displacement& u) {
   const PartTimer timer(Part::WindowPasses);
   NewtonResult result;
   Equilibrium now = evaluate(model_, contact, u, multipliers_);
@@ -219,7 +239,7 @@ NewtonResult NewtonSolver::solve(const ToolContact& contact, const NewtonOptions
     result.reason = "an element is inverted at the start of the increment";
     return result;
   }
-  bool stale = options.reuse_factor;
+  bool stale = options.reuse_factor && contact.tool().tip == tip_of_factor_;
   for (; result.iterations < options.max_iterations; ++result.iterations) {
     const double before = now.residual.norm();
     const double allowed = options.tolerance * std::max(contact.tool_force(u).norm(), 1e-12);
@@ -229,19 +249,22 @@ NewtonResult NewtonSolver::solve(const ToolContact& contact, const NewtonOptions
     }
     choose_patch(contact, u, stale && factorized_);
     stale = stale && factorized_;
-    if (!stale && !factorize(u)) {
+    if (!stale && !factorize(contact, u)) {
       result.reason = kNotDefinite;
       return result;
     }
-    const auto d = direction(contact, u, now.residual, kPatchTolerance * allowed);
-    const bool moved = d && line_search(contact, *d, now, u);
+    const auto d = direction(contact, u, now.residual,
+                             std::max(kPatchTolerance * allowed, kLeastPatchTolerance * before));
+    const bool moved = d && line_search(contact, *d, stale, now, u);
     if (!moved && !stale) {
       result.reason =
           d ? "line search failed: no step keeps every element from inversion and lowers the energy"
             : kNotDefinite;
       return result;
     }
-    stale = options.reuse_factor && moved && now.residual.norm() < kGoodContraction * before;
+    const double after = now.residual.norm();
+    stale = options.reuse_factor && moved && after < kGoodContraction * before &&
+            after < kSmallResidual * allowed / options.tolerance;
   }
   result.reason = "no convergence in " + std::to_string(options.max_iterations) + " iterations";
   return result;

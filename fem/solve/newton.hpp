@@ -16,8 +16,9 @@ namespace palpate::fem {
 struct NewtonOptions {
   double tolerance = 1e-4;  ///< |residual| over |tool force|
   int max_iterations = 40;
-  double round_off = 0;       ///< N, residual that counts as none
-  bool reuse_factor = false;  ///< reuse the last factor while it converges well (modified Newton)
+  double round_off = 0;  ///< N, residual that counts as none
+  /// Reuse the factor while the tool stays and it converges well (modified Newton).
+  bool reuse_factor = false;
 };
 
 struct NewtonResult {
@@ -46,7 +47,10 @@ Equilibrium evaluate(const SolidModel& model, const ToolContact& contact, const 
 /// E_c depends only on the unknowns of the contact patch P. The others are eliminated, which leaves
 /// the Schur complement S, and the minimum is found by Newton's method on P, dense and small:
 ///   min r'_P . d_P + d_P S d_P / 2 + E_c(d_P),   r' the load condensed to P.
-/// Facets that come into contact or leave it thus need no factorization. A compressed solid is
+/// Facets that come into contact or leave it thus need no factorization. After a long step of a
+/// nearly incompressible solid its pressures are far from those of the equilibrium, and A with them
+/// can be indefinite: A has those that the step foretold, as where pressures are unknowns of their
+/// own [Magisano, Leonetti & Garcea 2017]. A compressed solid is
 /// often stable only against its tool, and S indefinite: see PatchSolver. Steps are
 /// shortened until det F > 0 everywhere and the energy or the residual decreases, and lengthened
 /// where the energy falls along a straight line: a part of the body snaps to another equilibrium. A
@@ -61,12 +65,17 @@ class NewtonSolver {
                         Precision fastest = Precision::Double)
       : model_(model), permutation_(permutation), multipliers_(multipliers), fastest_(fastest) {}
 
+  /// Each solve goes on from the equilibrium of the last one, if any: see start_path().
   NewtonResult solve(const ToolContact& contact, const NewtonOptions& options, Displacement& u);
 
+  /// To be called where the next solve starts from another equilibrium than the last one found.
+  void start_path() { last_state_.resize(3, 0); }
+
  private:
+  NewtonResult descend(const ToolContact& contact, const NewtonOptions& options, Displacement& u);
   /// `factor_is_kept`: a smaller patch would not be worth another factor.
   void choose_patch(const ToolContact& contact, const Displacement& u, bool factor_is_kept);
-  bool factorize(const Displacement& u);
+  bool factorize(const ToolContact& contact, const Displacement& u);
   bool factorize_as_precisely_as_needed();
   /// The error of the solution of a test load with the patch held, over that solution.
   double error_of_solution();
@@ -76,9 +85,10 @@ class NewtonSolver {
   /// the model is not convex with the largest stiffening either.
   std::optional<Eigen::VectorXd> direction(const ToolContact& contact, const Displacement& u,
                                            const Eigen::VectorXd& residual, double tolerance);
-  /// Moves u along d; false when no admissible step is found.
-  bool line_search(const ToolContact& contact, const Eigen::VectorXd& d, Equilibrium& now,
-                   Displacement& u) const;
+  /// Moves u along d; false when no admissible step is found. A step with a factor of another state
+  /// is admissible as a whole only, and where its model foretells the energy.
+  bool line_search(const ToolContact& contact, const Eigen::VectorXd& d, bool stale,
+                   Equilibrium& now, Displacement& u);
   /// Doubles a step of length 1 from `from`, whose result is in u and now, while the energy falls,
   /// on until it bends up. `energy` and `slope` are those at `from`.
   void lengthen(const ToolContact& contact, const Eigen::VectorXd& d, const Displacement& from,
@@ -102,6 +112,10 @@ class NewtonSolver {
   PatchStiffness patch_stiffness_;
   PatchSolver patch_solver_;
   bool factorized_ = false;
+  Eigen::Vector3d tip_of_factor_ = Eigen::Vector3d::Zero();  ///< of the tool at that time, m
+  /// Whose pressures foretell those of the next tangent: the state before the last step, or the
+  /// last equilibrium; no columns: none yet.
+  Displacement last_state_;
 };
 
 }  // namespace palpate::fem

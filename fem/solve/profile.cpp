@@ -42,6 +42,7 @@ const char* name_of(Part part) {
 }
 
 void PartTimer::start() {
+  active_profile->count(part_);
   started_ = thread_nanoseconds();
   outer_ = innermost;
   if (outer_ != nullptr) active_profile->add(outer_->part_, started_ - outer_->started_);

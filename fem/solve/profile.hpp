@@ -32,12 +32,15 @@ class Profile {
   void add(Part part, std::int64_t nanoseconds) {
     spent_[static_cast<std::size_t>(part)] += nanoseconds;
   }
+  void count(Part part) { ++times_[static_cast<std::size_t>(part)]; }
   double seconds(Part part) const {
     return 1e-9 * static_cast<double>(spent_[static_cast<std::size_t>(part)].load());
   }
+  /// How often the part began.
+  std::int64_t times(Part part) const { return times_[static_cast<std::size_t>(part)].load(); }
 
  private:
-  std::array<std::atomic<std::int64_t>, kParts> spent_{};
+  std::array<std::atomic<std::int64_t>, kParts> spent_{}, times_{};
 };
 
 /// Where the timers add up; null, as it is without a benchmark, when nothing is timed. To be set

@@ -16,6 +16,9 @@ constexpr double kRotated = 5e-3;
 /// Trials of a step, and the shortest to begin with.
 constexpr int kMostTrials = 6;
 constexpr double kShortestStep = 1e-4;
+/// Length of a step without curvature pairs: K0^-1 does not know that the tool holds the surface,
+/// and a whole step goes about twice as far as the minimum.
+constexpr double kFirstStep = 0.5;
 /// Factor on the sensitivity of the force from step to step.
 constexpr double kDecay = 0.5;
 /// The multipliers step where the error of the force has fallen below this part of that after their
@@ -123,7 +126,7 @@ bool SharedFactorSolver::step(const ToolContact& contact, const NewtonOptions& o
                               const Eigen::VectorXd& d, Equilibrium& now, Displacement& u,
                               NewtonResult& result) {
   const double slope = now.residual.dot(d);
-  double length = longest_step(now.energy, slope);
+  double length = (pairs_.empty() ? kFirstStep : 1) * longest_step(now.energy, slope);
   for (int trials = 0; trials < kMostTrials; ++trials) {
     const double tried = std::exchange(length, 0.5 * length);
     Displacement trial = u;
@@ -148,6 +151,7 @@ bool SharedFactorSolver::step(const ToolContact& contact, const NewtonOptions& o
 
 void SharedFactorSolver::start_path(const Eigen::Vector3d& tip, const Displacement& u) {
   restart();
+  newton_.start_path();
   if (!multipliers_.any()) return;
   whole_.take_pressures(u, multipliers_);
   multiplier_path_.start(tip, multipliers_.values);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 
 #include "fem/factor/cholesky.hpp"
@@ -97,8 +98,30 @@ TEST_P(SolidModels, HaveTheVolumeOfTheDisplacedBody) {
   Eigen::Matrix3d F;
   F << 1.1, 0.05, 0, -0.02, 0.95, 0.1, 0.03, 0, 0.9;
   const Displacement u = (F - Eigen::Matrix3d::Identity()) * model.mesh().X;
-  EXPECT_NEAR(model.volume(Displacement::Zero(3, model.mesh().nodes())), 8e-6, 1e-18);
-  EXPECT_NEAR(model.volume(u), F.determinant() * 8e-6, 1e-17);
+  EXPECT_NEAR(model.energy(Displacement::Zero(3, model.mesh().nodes())).volume, 8e-6, 1e-18);
+  EXPECT_NEAR(model.energy(u).volume, F.determinant() * 8e-6, 1e-17);
+}
+
+/// The pressures at the end of a straight step, to first order in it: by central differences. Those
+/// at both ends are mean stresses, as the isochoric stress has none.
+TEST_P(SolidModels, ForetellThePressuresOfAStep) {
+  const Displacement from = moved(0), to = moved(1);
+  const std::vector<double> foretold = model.foretold_pressures(from, to);
+  if (GetParam() != Dilatation::Mean) {
+    EXPECT_TRUE(foretold.empty());
+    return;
+  }
+  constexpr double h = 1e-3;
+  std::vector<double> density, start, before, after;
+  model.element_fields(from, density, start);
+  model.element_fields(from + h * (to - from), density, after);
+  model.element_fields(from - h * (to - from), density, before);
+  ASSERT_EQ(foretold.size(), start.size());
+  double largest = 0;
+  for (std::size_t e = 0; e < start.size(); ++e)
+    largest = std::max(largest, std::abs(foretold[e] - start[e]));
+  for (std::size_t e = 0; e < start.size(); ++e)
+    EXPECT_NEAR(foretold[e], start[e] + (after[e] - before[e]) / (2 * h), 1e-5 * largest);
 }
 
 TEST_P(SolidModels, FindTheMostCompressedElement) {
@@ -119,6 +142,31 @@ INSTANTIATE_TEST_SUITE_P(Elements, SolidModels,
                          [](const auto& instance) {
                            return std::to_string(static_cast<int>(instance.param));
                          });
+
+/// A stiffness with given pressures is the stiffness where they are those of the displacement, and
+/// is linear in them.
+TEST(SolidModel, HasAStiffnessLinearInThePressuresOfItsElements) {
+  const Body body =
+      test::make_block(test::even(0, 0.02, 3), test::even(0, 0.02, 3), test::even(0, 0.02, 3));
+  const SolidModel model(body, {NeoHookean::from_young_poisson(10e3, 0.45, "t")});
+  Displacement u = Displacement::Zero(3, model.mesh().nodes());
+  add_step(model, 1, 1e-4 * Eigen::VectorXd::Random(model.pattern().n), u);
+  std::vector<double> density, p, K, with, without, with_twice;
+  model.element_fields(u, density, p);
+  model.stiffness(u, K);
+  model.stiffness(u, with, nullptr, p);
+  model.stiffness(u, without, nullptr, std::vector<double>(p.size(), 0.0));
+  for (double& pressure : p) pressure *= 2;
+  model.stiffness(u, with_twice, nullptr, p);
+  const double largest = *std::max_element(K.begin(), K.end());
+  double part = 0;
+  for (std::size_t i = 0; i < K.size(); ++i) {
+    EXPECT_NEAR(with[i], K[i], 1e-9 * largest);
+    EXPECT_NEAR(with_twice[i] - without[i], 2 * (with[i] - without[i]), 1e-9 * largest);
+    part = std::max(part, std::abs(with[i] - without[i]));
+  }
+  EXPECT_GT(part, 1e-6 * largest);
+}
 
 TEST(SolidModel, WindowHasTheForcesOfTheWholeOnItsUnknowns) {
   const Body body =

@@ -64,6 +64,7 @@ TEST_F(Profiles, AddUpOverThreads) {
   busy();
   other.join();
   EXPECT_GE(profile.seconds(Part::WindowFactor), 0.02);
+  EXPECT_EQ(profile.times(Part::WindowFactor), 2);
 }
 
 TEST_F(Profiles, AreNotTimedWithoutAProfile) {
