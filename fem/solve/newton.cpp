@@ -36,6 +36,9 @@ constexpr double kLongestStep = 64;
 /// residual over the tool force. Where the elements under the tool are refined a factor takes as
 /// long as three steps (bench_case_profile).
 constexpr double kGoodContraction = 0.5, kSmallResidual = 0.01;
+/// Residual over the tool force, where the tool has moved, above which the factor of before does
+/// not serve a first step either (bench_case_profile).
+constexpr double kLongIncrement = 0.3;
 /// Part of the decrease of the energy that the model of a factor of another state foretells, which
 /// a step with it must reach.
 constexpr double kForetold = 0.5;
@@ -239,7 +242,9 @@ NewtonResult NewtonSolver::descend(const ToolContact& contact, const NewtonOptio
     result.reason = "an element is inverted at the start of the increment";
     return result;
   }
-  bool stale = options.reuse_factor && contact.tool().tip == tip_of_factor_;
+  bool stale =
+      options.reuse_factor && (contact.tool().tip == tip_of_factor_ ||
+                               now.residual.norm() < kLongIncrement * contact.tool_force(u).norm());
   for (; result.iterations < options.max_iterations; ++result.iterations) {
     const double before = now.residual.norm();
     const double allowed = options.tolerance * std::max(contact.tool_force(u).norm(), 1e-12);

@@ -17,7 +17,7 @@ struct NewtonOptions {
   double tolerance = 1e-4;  ///< |residual| over |tool force|
   int max_iterations = 40;
   double round_off = 0;  ///< N, residual that counts as none
-  /// Reuse the factor while the tool stays and it converges well (modified Newton).
+  /// Reuse the factor while it converges well (modified Newton).
   bool reuse_factor = false;
 };
 
