@@ -30,9 +30,6 @@ constexpr std::size_t kAcrossIncrements = 2;
 /// error of its tool force. Only the picture of the skin comes from it, linear in the travel.
 constexpr double kAcrossTravel = 0.5;
 constexpr double kAcrossTolerance = 5e-3;
-/// Error of the tool force, over that of the settings, of the equilibrium that tells which points
-/// have touched in an increment of a no-slip press, and where. Another one follows with these tied.
-constexpr double kTouchTolerance = 5;
 
 double thread_cpu_seconds() {
   timespec now{};
@@ -121,15 +118,11 @@ bool SiteSolver::press_to(Site& site, PathDriver& driver, const Increment& incre
                           Predictor& states, Displacement& u, CurveSample& sample,
                           std::string& reason) {
   const IncrementStart start{u, site.tool_at(increment.from).tip};
-  const bool no_slip = context_.indentation.friction == ToolFriction::NoSlip;
-  const double tolerance = context_.indentation.force_tolerance;
-  site.equilibrium.allow_error(no_slip ? kTouchTolerance * tolerance : tolerance);
   if (!driver.advance(increment.from, increment.to, states, u, sample, reason)) return false;
-  if (!no_slip) return true;
-  site.equilibrium.allow_error(tolerance);
+  if (context_.indentation.friction != ToolFriction::NoSlip) return true;
   const ToolContact before = site.contact;
   if (bond_observer_) bond_observer_(before, u, start);
-  site.contact.bond_since(start, u);
+  if (!site.contact.bond_since(start, u)) return true;
   if (driver.settle(increment.to, states, u, sample, reason)) return true;
   site.contact = before;
   return false;

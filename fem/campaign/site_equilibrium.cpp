@@ -12,6 +12,9 @@ namespace {
 /// Residual at which the shared-factor solver stops, over the wanted error of the force. The force
 /// is off by up to twice that residual on a lateral path (bench_precompute errors).
 constexpr double kSharedTolerance = 0.5;
+/// Factor on that tolerance for a no-slip normal path: the surface is bonded where it is met, so
+/// that errors add up, and an error may decide whether a node has touched.
+constexpr double kNoSlipTolerance = 0.5;
 /// Steps with the shared factor before a site gets a factor of its own: as many as that costs, by
 /// its size, and no more than an increment may take.
 constexpr int kFewestSteps = 15, kMostSteps = 80;
@@ -89,6 +92,7 @@ NewtonResult SiteEquilibrium::solve_shared(const ToolContact& contact, Displacem
   options.round_off = context_.round_off;
   options.tolerance = kSharedTolerance * force_tolerance_;
   options.max_iterations = kMostSteps + steps_before_own_factor(*context_.rest_factor);
+  if (context_.indentation.friction == ToolFriction::NoSlip) options.tolerance *= kNoSlipTolerance;
   Displacement trial = u;
   NewtonResult result = shared_->solve(contact, options, trial);
   if (result.converged)
