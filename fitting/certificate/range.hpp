@@ -15,12 +15,10 @@ inline constexpr double kRoundingFactor = 1 + 1e-12;
 /// A number below (above) every real number that rounds to `v`. Zero stays zero, because a sum,
 /// product or quotient of doubles is exact when it is zero, apart from underflow.
 inline double round_down(double v) {
-  constexpr double kUnit = std::numeric_limits<double>::epsilon();
-  return v * (v > 0 ? 1 - kUnit : 1 + kUnit);
+  return v - std::numeric_limits<double>::epsilon() * std::abs(v);
 }
 inline double round_up(double v) {
-  constexpr double kUnit = std::numeric_limits<double>::epsilon();
-  return v * (v > 0 ? 1 + kUnit : 1 - kUnit);
+  return v + std::numeric_limits<double>::epsilon() * std::abs(v);
 }
 
 /// All numbers from low to high. The result of an operation contains every value of the exact

@@ -2,10 +2,10 @@
 // The symbols are those of docs/theory-fitting.md, section "Sliding".
 #include "fitting/certificate/slide_jacobian.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
+#include "fitting/certificate/norm_bound.hpp"
 #include "fitting/certificate/slide_terms.hpp"
 #include "format/numbers.hpp"
 
@@ -27,22 +27,6 @@ Range mean_slope(const runtime::CompiledCurve& curve, const Range& d) {
   const Range slopes = slope_range(curve, {0, d.high});
   if (!(d.low > 0)) return slopes;
   return common(slopes, Range::outward(curve.force(d.low) / d.high, curve.force(d.high) / d.low));
-}
-
-/// Upper bound of the spectral norm of all matrices with entries in these ranges: the norm of the
-/// middle plus the Frobenius norm of the radii.
-double norm_bound(const std::array<std::array<Range, 3>, 3>& entry) {
-  Eigen::Matrix3d middle, radius;
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < 3; ++j) {
-      middle(static_cast<int>(i), static_cast<int>(j)) = entry[i][j].middle();
-      radius(static_cast<int>(i), static_cast<int>(j)) = entry[i][j].radius();
-    }
-  }
-  if (!middle.allFinite() || !radius.allFinite()) return kInfinity;
-  const Eigen::Matrix3d squared = middle.transpose() * middle;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(squared, Eigen::EigenvaluesOnly);
-  return std::sqrt(std::max(0.0, eigen.eigenvalues()[2])) + radius.norm();
 }
 
 /// x >= 0 with slope x + curvature x^2 = rise, on a piece whose force rises by at least `rise`.
@@ -296,17 +280,14 @@ slide::Response SlideJacobian::response(const SlideCell& cell, const Range& rho)
 }
 
 /// The terms that divide by w h' are left out where it may be zero.
-slide::Terms SlideJacobian::terms(const SlideCell& cell, const Range& rho, Grip grip) const {
+slide::Terms SlideJacobian::terms_of_any_grip(const SlideCell& cell, const Range& rho) const {
   const double mu = element_->friction;
   Terms x;
-  x.f = facet(cell);
   x.r = response(cell, rho);
   if (!(x.r.w_h_r.low > 0)) return x;
-  const Range shrinking = grip == Grip::Renewed ? x.r.w_z_h : Range{};
-  x.m = (mu * x.r.g_z - shrinking) / x.r.w_h_r;
+  x.f = facet(cell);
   x.mu_g = mu * x.r.g_here;
   x.mu_g_z = mu * x.r.g_z;
-  x.n_z = x.r.g_z;
   x.limit_rate = along(x.f, x.r.excess) / x.r.w_h_r;
   x.g_tau = along(x.f, x.r.g);
   x.mu_g_tau = mu * x.g_tau;
@@ -315,6 +296,14 @@ slide::Terms SlideJacobian::terms(const SlideCell& cell, const Range& rho, Grip 
   x.q = x.f.n_tau - x.length * x.f.kappa_t;
   x.p = x.f.t_tau + cell.reach * x.f.kappa_t;
   x.s = x.f.s_tau + cell.reach * x.f.kappa_s;
+  return x;
+}
+
+/// The rest of the terms. @pre x.r.w_h_r.low > 0
+slide::Terms SlideJacobian::with_grip(Terms x, const SlideCell& cell, Grip grip) const {
+  const Range shrinking = grip == Grip::Renewed ? x.r.w_z_h : Range{};
+  x.m = (element_->friction * x.r.g_z - shrinking) / x.r.w_h_r;
+  x.n_z = x.r.g_z;
   if (leans_) add_lean(cell, grip, x);
   if (x.soft) {
     add_softening(x);
@@ -368,14 +357,14 @@ double SlideJacobian::bound(const SlideCell& cell) const {
   const Range rho = slip_limit(cell);
   if (rho.low == kInfinity) return 0;
   if (rho.high == kInfinity) return kInfinity;
-  double bound = bound_of_response(cell, rho, Grip::Renewed);
-  if (element_->coupling) bound = std::max(bound, bound_of_response(cell, rho, Grip::Kept));
-  return bound;
+  const Terms any = terms_of_any_grip(cell, rho);
+  if (!(any.r.w_h_r.low > 0)) return kInfinity;
+  const double renewed = bound_of_response(with_grip(any, cell, Grip::Renewed));
+  if (!element_->coupling) return renewed;
+  return std::max(renewed, bound_of_response(with_grip(any, cell, Grip::Kept)));
 }
 
-double SlideJacobian::bound_of_response(const SlideCell& cell, const Range& rho, Grip grip) const {
-  const Terms x = terms(cell, rho, grip);
-  if (!(x.r.w_h_r.low > 0)) return kInfinity;
+double SlideJacobian::bound_of_response(const Terms& x) const {
   if (x.soft) return bound_of_soft_response(x);
   Range v_n = x.g_tau - x.n_z * x.q - x.mu_g * x.f.kappa_t;
   Range v_t = x.mu_g_tau - x.mu_g_z * x.q + x.r.g_here * x.f.kappa_t;
@@ -402,8 +391,10 @@ double SlideJacobian::bound_of_response(const SlideCell& cell, const Range& rho,
 SlideCauses SlideJacobian::causes(const SlideCell& state) const {
   const Range rho = slip_limit(state);
   if (!(rho.high < kInfinity)) return {0, kInfinity, kInfinity, kInfinity};
-  const Terms x = terms(state, rho, Grip::Renewed);
-  if (!(x.r.w_h_r.low > 0 && x.rate.low > 0)) return {x.norm_M0, kInfinity, kInfinity, kInfinity};
+  const Terms any = terms_of_any_grip(state, rho);
+  if (!(any.r.w_h_r.low > 0)) return {0, kInfinity, kInfinity, kInfinity};
+  const Terms x = with_grip(any, state, Grip::Renewed);
+  if (!(x.rate.low > 0)) return {x.norm_M0, kInfinity, kInfinity, kInfinity};
   const double stretch = element_->stretch(state.z);
   const double motion =
       stretch * std::hypot(1.0, x.m.magnitude()) / x.rate.low;  // |w|, times |A|^2

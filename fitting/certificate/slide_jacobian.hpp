@@ -91,8 +91,9 @@ class SlideJacobian {
   using Entries = std::array<Vector, 3>;
   /// Bound of the norm of A^T X A for X in the frame (n, t, s).
   double leaned_norm(const Facet& facet, const Entries& x) const;
-  Terms terms(const SlideCell& cell, const Range& rho, Grip grip) const;
-  double bound_of_response(const SlideCell& cell, const Range& rho, Grip grip) const;
+  Terms terms_of_any_grip(const SlideCell& cell, const Range& rho) const;
+  Terms with_grip(Terms x, const SlideCell& cell, Grip grip) const;
+  double bound_of_response(const Terms& x) const;
   double bound_of_soft_response(const Terms& x) const;
   static Vector soft_turning(const Terms& x);
   static Vector lean_turning(const Terms& x);

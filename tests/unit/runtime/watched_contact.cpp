@@ -221,14 +221,18 @@ double MemoryTwin::lateral_energy(const Vec3& q) const {
   return sum.stored - dot(sum.relaxed, q);
 }
 
-/// The deflection, no longer than `longest`, at which grad H is a force: by halving.
+/// The deflection, no longer than `longest`, at which grad H is a force: by halving and secants.
 Vec3 MemoryTwin::deflection_of(const Vec3& force, double longest) const {
   const double size = norm(force);
   if (!(size > 0)) return {};
-  double low = 0, high = longest;
-  for (int i = 0; i < 60 && high - low > 1e-17 * longest; ++i) {
-    const double middle = (low + high) / 2;
-    (lateral(middle) < size ? low : high) = middle;
+  double low = 0, high = longest, f_low = 0, f_high = lateral(longest);
+  for (int i = 0; i < 120 && high - low > 1e-17 * longest; ++i) {
+    const double secant = low + (high - low) * (size - f_low) / std::max(f_high - f_low, 1e-300);
+    const double rho = i % 3 == 2 || !(secant > low && secant < high) ? (low + high) / 2 : secant;
+    const double f = lateral(rho);
+    (f < size ? low : high) = rho;
+    (f < size ? f_low : f_high) = f;
+    if (std::abs(f - size) <= 1e-15 * size) return (rho / size) * force;
   }
   return (high / size) * force;
 }
