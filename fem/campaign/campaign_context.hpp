@@ -10,6 +10,7 @@
 
 #include "fem/campaign/settings.hpp"
 #include "fem/contact/contact.hpp"
+#include "fem/factor/front_memory.hpp"
 #include "fem/factor/rest_factor.hpp"
 #include "fem/factor/solve_pool.hpp"
 #include "fem/solid/solid_model.hpp"
@@ -52,6 +53,7 @@ struct CampaignContext {
   double round_off;              ///< N, residual that is rounding of the equilibrium at rest
   ContactStiffness contact_stiffness;
   std::shared_ptr<const RestFactor> rest_factor;  ///< SharedFactor only
+  mutable SharedFronts window_fronts;             ///< of the sites: few are computed at a time
   mutable std::mutex direct_solve;                ///< locked while a site factorizes the whole body
   /// Places for factors that sites have of their own, as many as memory has room for.
   mutable std::counting_semaphore<> own_factors{0};

@@ -83,6 +83,7 @@ void parallel_for_sites(const RestFactor& factor, const SiteThreads& size, std::
   std::mutex mutex;
   std::exception_ptr failure;
   SolvePool pool(factor, size.cores);
+  share_heaps(size.cores);
   const auto serve = [&] {
     use_one_thread_per_site();
     SolvePool::Member member(pool);

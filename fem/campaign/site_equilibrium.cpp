@@ -65,7 +65,8 @@ SiteEquilibrium::SiteEquilibrium(const CampaignContext& context, const SiteBody&
   shared_ = std::make_unique<SharedFactorSolver>(
       body.whole(), body.window(),
       [member](const Eigen::VectorXd& b, Eigen::VectorXd& x) { member->solve(b, x); },
-      bent_body(context, *member), pairs_needed(context), body.prolongation());
+      bent_body(context, *member), pairs_needed(context), body.prolongation(),
+      &context.window_fronts);
 }
 
 NewtonResult SiteEquilibrium::solve(const ToolContact& contact, bool direct_allowed,

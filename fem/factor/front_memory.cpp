@@ -65,14 +65,21 @@ void FrontMemory<Number>::give_back(LargeVector<Number>&& memory) {
 template <class Number>
 LargeVector<Number> FrontMemory<Number>::take_scratch() {
   const std::lock_guard lock(mutex_);
-  return std::exchange(scratch_, {});
+  if (scratch_.empty()) return {};
+  const auto largest =
+      std::max_element(scratch_.begin(), scratch_.end(),
+                       [](const auto& a, const auto& b) { return a.capacity() < b.capacity(); });
+  std::swap(*largest, scratch_.back());
+  LargeVector<Number> left = std::move(scratch_.back());
+  scratch_.pop_back();
+  return left;
 }
 
 template <class Number>
 void FrontMemory<Number>::leave_scratch(LargeVector<Number>&& memory) {
   LargeVector<Number> mine = std::move(memory);
   const std::lock_guard lock(mutex_);
-  if (mine.capacity() > scratch_.capacity()) scratch_.swap(mine);
+  scratch_.push_back(std::move(mine));
 }
 
 template class FrontMemory<float>;

@@ -5,6 +5,7 @@
 #include <limits>
 #include <list>
 #include <mutex>
+#include <vector>
 
 #include "fem/factor/large_pages.hpp"
 
@@ -22,7 +23,7 @@ class FrontMemory {
   LargeVector<Number> zeros(std::size_t numbers);
   void give_back(LargeVector<Number>&& memory);
 
-  /// Scratch memory that the last factorization has left, of any size, for one of its threads.
+  /// The largest scratch memory that threads of factorizations have left; empty without any.
   LargeVector<Number> take_scratch();
   void leave_scratch(LargeVector<Number>&& memory);
 
@@ -33,7 +34,24 @@ class FrontMemory {
   double bound_ = std::numeric_limits<double>::infinity(),
          allocated_ = 0;  ///< bytes; of all large blocks, in use or spare
   std::list<LargeVector<Number>> spare_;
-  LargeVector<Number> scratch_;
+  std::vector<LargeVector<Number>> scratch_;
 };
+
+/// The memory that the factorizations of many matrices share, one at a time on each thread.
+struct SharedFronts {
+  FrontMemory<float> in_single;
+  FrontMemory<double> in_double;
+
+  template <class Number>
+  FrontMemory<Number>& of();
+};
+template <>
+inline FrontMemory<float>& SharedFronts::of() {
+  return in_single;
+}
+template <>
+inline FrontMemory<double>& SharedFronts::of() {
+  return in_double;
+}
 
 }  // namespace palpate::fem

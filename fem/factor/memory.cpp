@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "fem/factor/memory.hpp"
 
+#include <malloc.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -41,6 +42,10 @@ int fitting_times(double bound, double each, int wanted, const std::string& what
               what + " needs " + megabytes(each) + " beside the " + megabytes(used) + " in use" +
                   (reserved > 0 ? " and " + megabytes(reserved) + " reserved" : ""),
               "allow more memory, use fewer threads or a coarser mesh");
+}
+
+void share_heaps(int cores) {
+  mallopt(M_ARENA_MAX, std::max(1, cores));
 }
 
 void out_of_memory(int unknowns) {

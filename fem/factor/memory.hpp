@@ -18,6 +18,10 @@ double machine_bytes();
 int fitting_times(double bound, double each, int wanted, const std::string& what,
                   double reserved = 0);
 
+/// Threads that start from now on share as many heaps as there are cores. More sites than cores are
+/// solved at a time, taking turns: a heap for each would keep what all of them have freed.
+void share_heaps(int cores);
+
 /// @throws Error(Internal), always: memory ran out in the factorization of so many unknowns.
 [[noreturn]] void out_of_memory(int unknowns);
 

@@ -32,10 +32,12 @@ SupernodalView PartialFactor::Cut::view() const {
   return view;
 }
 
-PartialFactor::PartialFactor(const SparsePattern& pattern, const Cholesky& analysis)
+PartialFactor::PartialFactor(const SparsePattern& pattern, const Cholesky& analysis,
+                             SharedFronts* fronts)
     : kept_(analysis.last_unknowns()),
       cut_(analysis.view(), pattern.n, static_cast<int>(kept_.size())),
       fronts_(pattern, cut_.view()),
+      shared_(fronts),
       start_(1, 0) {
   for (int k = 0; k < cut_.view().supernodes; ++k)
     start_.push_back(start_.back() + to_index(columns(k)) * to_index(rows(k)));
@@ -83,7 +85,8 @@ bool PartialFactor::factorize_columns(const std::vector<double>& values, Columns
     const Multifrontal::Left<Number> add = [this](int k, const Number* update) {
       add_update(k, update);
     };
-    return fronts_.factorize(values, 1, store, add, &columns.fronts);
+    SharedFronts& memory = shared_ != nullptr ? *shared_ : own_;
+    return fronts_.factorize(values, 1, store, add, &memory.of<Number>());
   } catch (const std::bad_alloc&) {
     out_of_memory(static_cast<int>(cut_.permutation.size()));
   }

@@ -21,9 +21,10 @@ enum class Precision { Single, Double };
 class PartialFactor {
  public:
   /// `permutation`: elimination order of all unknowns, minimum degree without one; `kept` leave it.
+  /// `fronts`: for the factorizations, which may share it with others; it must outlive this.
   PartialFactor(const SparsePattern& pattern, const std::vector<int>* permutation,
-                const std::vector<int>& kept)
-      : PartialFactor(pattern, Cholesky(pattern, permutation, kept)) {}
+                const std::vector<int>& kept, SharedFronts* fronts = nullptr)
+      : PartialFactor(pattern, Cholesky(pattern, permutation, kept), fronts) {}
   PartialFactor(const PartialFactor&) = delete;
   PartialFactor& operator=(const PartialFactor&) = delete;
 
@@ -54,12 +55,11 @@ class PartialFactor {
   template <class Number>
   struct Columns {
     LargeVector<Number> values;
-    FrontMemory<Number> fronts;
     Eigen::Vector<Number, Eigen::Dynamic> ordered;  ///< of a solve, in the order of elimination
     Eigen::Vector<Number, Eigen::Dynamic> below;    ///< of a supernode, scratch memory
   };
 
-  PartialFactor(const SparsePattern& pattern, const Cholesky& analysis);
+  PartialFactor(const SparsePattern& pattern, const Cholesky& analysis, SharedFronts* fronts);
 
   int eliminated() const { return cut_.first_column.back(); }
   int columns(int supernode) const;
@@ -82,6 +82,8 @@ class PartialFactor {
   std::vector<int> kept_;
   Cut cut_;
   Multifrontal fronts_;
+  SharedFronts* shared_;
+  SharedFronts own_;                ///< where none is shared
   std::vector<std::size_t> start_;  ///< of each supernode in the values of L
   std::vector<KeptEntry> kept_entries_;
   Eigen::MatrixXd S_;

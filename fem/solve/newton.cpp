@@ -81,7 +81,7 @@ void NewtonSolver::choose_patch(const ToolContact& contact, const Displacement& 
     patch_ = std::move(needed);
   }
   const PartTimer timer(Part::WindowAnalysis);
-  factor_.emplace(model_.pattern(), permutation_, patch_->unknowns());
+  factor_.emplace(model_.pattern(), permutation_, patch_->unknowns(), fronts_);
   precision_ = fastest_;
   precision_is_checked_ = precision_ == Precision::Double;
   const std::vector<int>& ours = patch_->unknowns();

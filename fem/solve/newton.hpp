@@ -59,11 +59,16 @@ class NewtonSolver {
  public:
   /// `permutation`: elimination order for the pattern of the model, see Cholesky. `fastest`: in
   /// single precision factors cost half and steps are a little off; where they would be off by more
-  /// than a few percent the factor is computed in double precision all the same.
+  /// than a few percent the factor is computed in double precision all the same. `fronts`: see
+  /// PartialFactor.
   explicit NewtonSolver(const SolidModel& model, const std::vector<int>* permutation = nullptr,
                         const DilatationMultipliers* multipliers = nullptr,
-                        Precision fastest = Precision::Double)
-      : model_(model), permutation_(permutation), multipliers_(multipliers), fastest_(fastest) {}
+                        Precision fastest = Precision::Double, SharedFronts* fronts = nullptr)
+      : model_(model),
+        permutation_(permutation),
+        multipliers_(multipliers),
+        fronts_(fronts),
+        fastest_(fastest) {}
 
   /// Each solve goes on from the equilibrium of the last one, if any: see start_path().
   NewtonResult solve(const ToolContact& contact, const NewtonOptions& options, Displacement& u);
@@ -102,6 +107,7 @@ class NewtonSolver {
   const SolidModel& model_;
   const std::vector<int>* permutation_;
   const DilatationMultipliers* multipliers_;
+  SharedFronts* fronts_;
   std::optional<ContactPatch> patch_;
   Precision fastest_,
       precision_ = Precision::Double;  ///< asked for; of the factors with this patch

@@ -52,12 +52,14 @@ class SharedFactorSolver {
   };
 
   /// `prolongation`: from the body that was factorized to the refined mesh of `whole` and `window`;
-  /// phi is a function of the unknowns of the former. Null where no element is refined.
+  /// phi is a function of the unknowns of the former. Null where no element is refined. `fronts`:
+  /// for the factors of the window, see PartialFactor.
   SharedFactorSolver(const SolidModel& whole, const SolidModel& window, RestSolve rest_solve,
-                     BentBody bent, std::size_t pairs, const Prolongation* prolongation = nullptr)
+                     BentBody bent, std::size_t pairs, const Prolongation* prolongation = nullptr,
+                     SharedFronts* fronts = nullptr)
       : whole_(whole),
         multipliers_(whole.multipliers()),
-        newton_(window, nullptr, &multipliers_, Precision::Single),
+        newton_(window, nullptr, &multipliers_, Precision::Single, fronts),
         rest_solve_(std::move(rest_solve)),
         bent_(std::move(bent)),
         prolongation_(prolongation),

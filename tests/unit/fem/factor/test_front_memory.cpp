@@ -40,14 +40,16 @@ TEST(FrontMemory, DoesNotWasteALargeBlockOnASmallRequest) {
   EXPECT_LE(small.capacity(), 2 * kLarge);
 }
 
-TEST(FrontMemory, KeepsTheLargestScratchThatWasLeft) {
+TEST(FrontMemory, GivesTheLargestScratchThatIsLeft) {
   FrontMemory<float> pool;
   EXPECT_TRUE(pool.take_scratch().empty());
   LargeVector<float> small(10), large(kLarge);
-  const float* address = large.data();
+  const float *of_large = large.data(), *of_small = small.data();
   pool.leave_scratch(std::move(large));
   pool.leave_scratch(std::move(small));
-  EXPECT_EQ(pool.take_scratch().data(), address);
+  const LargeVector<float> first = pool.take_scratch(), second = pool.take_scratch();
+  EXPECT_EQ(first.data(), of_large);
+  EXPECT_EQ(second.data(), of_small);
   EXPECT_TRUE(pool.take_scratch().empty());
 }
 

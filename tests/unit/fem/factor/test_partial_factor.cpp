@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <thread>
 
 #include "tests/unit/fem/factor/assembled_block.hpp"
 
@@ -114,6 +115,23 @@ TEST_P(PartialFactorTest, MayKeepAllUnknowns) {
   factor.solve_backward(Eigen::VectorXd{{4, 5}}, x);
   EXPECT_DOUBLE_EQ(x[factor.kept()[0]], 4);
   EXPECT_DOUBLE_EQ(x[factor.kept()[1]], 5);
+}
+
+/// What one has left in the memory must not reach the other.
+TEST_P(PartialFactorTest, FactorsOnTwoThreadsMayShareTheMemoryOfTheirFronts) {
+  PartialFactor alone(a_.model.pattern(), nullptr, kKept);
+  ASSERT_TRUE(alone.factorize(a_.K, GetParam()));
+  SharedFronts fronts;
+  const auto factorize_repeatedly = [&] {
+    PartialFactor factor(a_.model.pattern(), nullptr, kKept, &fronts);
+    for (int i = 0; i < 20; ++i) {
+      ASSERT_TRUE(factor.factorize(a_.K, GetParam()));
+      ASSERT_EQ(factor.schur_complement(), alone.schur_complement());
+    }
+  };
+  std::thread other(factorize_repeatedly);
+  factorize_repeatedly();
+  other.join();
 }
 
 INSTANTIATE_TEST_SUITE_P(Factor, PartialFactorTest,
