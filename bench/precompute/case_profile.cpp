@@ -12,6 +12,7 @@
 #include "app/blas_kernel.hpp"
 #include "app/pipeline/settings.hpp"
 #include "app/pipeline/workspace.hpp"
+#include "bench/precompute/guarded.hpp"
 #include "fem/campaign/campaign.hpp"
 #include "fem/solve/profile.hpp"
 #include "format/body.hpp"
@@ -72,12 +73,11 @@ void profile(const std::string& case_file, const std::string& body_file, std::si
 }  // namespace palpate
 
 int main(int count, char** arguments) {
-  if (count < 3 || count > 4) {
+  const std::size_t sites = count == 4 ? std::strtoul(arguments[3], nullptr, 10) : 16;
+  if (count < 3 || count > 4 || sites == 0) {
     std::fputs("usage: bench_case_profile CASE BODY [SITES]\n", stderr);
     return 2;
   }
   palpate::app::ensure_blas_kernel(arguments);
-  palpate::profile(arguments[1], arguments[2],
-                   count == 4 ? std::strtoul(arguments[3], nullptr, 10) : 16);
-  return 0;
+  return palpate::guarded([&] { palpate::profile(arguments[1], arguments[2], sites); });
 }

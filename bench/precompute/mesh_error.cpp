@@ -19,6 +19,7 @@
 #include "app/blas_kernel.hpp"
 #include "app/pipeline/settings.hpp"
 #include "app/pipeline/workspace.hpp"
+#include "bench/precompute/guarded.hpp"
 #include "fem/campaign/campaign.hpp"
 #include "fem/campaign/finer_mesh.hpp"
 #include "fitting/response/mesh_error.hpp"
@@ -406,7 +407,7 @@ int main(int count, char** arguments) {
   } else if (part == "elements") {
     palpate::against_elements();
   } else if (count == 3) {
-    palpate::of_case(arguments[1], arguments[2]);
+    return palpate::guarded([&] { palpate::of_case(arguments[1], arguments[2]); });
   } else {
     std::fputs("usage: bench_mesh_error size | bound | elements | CASE BODY\n", stderr);
     return 2;
