@@ -18,8 +18,9 @@ double machine_bytes();
 int fitting_times(double bound, double each, int wanted, const std::string& what,
                   double reserved = 0);
 
-/// Threads that start from now on share as many heaps as there are cores. More sites than cores are
-/// solved at a time, taking turns: a heap for each would keep what all of them have freed.
+/// Threads that start from now on share as many heaps as there are cores: more sites than cores are
+/// in work, taking turns, and a heap of its own would keep what each of them has freed. glibc heeds
+/// this while the process has no more than eight heaps.
 void share_heaps(int cores);
 
 /// @throws Error(Internal), always: memory ran out in the factorization of so many unknowns.

@@ -13,12 +13,13 @@ namespace palpate::fitting {
 inline constexpr double kRoundingFactor = 1 + 1e-12;
 
 /// A number below (above) every real number that rounds to `v`. Zero stays zero, because a sum,
-/// product or quotient of doubles is exact when it is zero, apart from underflow.
+/// product or quotient of doubles is exact when it is zero, apart from underflow. Infinity stays
+/// infinity.
 inline double round_down(double v) {
-  return v - std::numeric_limits<double>::epsilon() * std::abs(v);
+  return v * (1 - std::copysign(std::numeric_limits<double>::epsilon(), v));
 }
 inline double round_up(double v) {
-  return v + std::numeric_limits<double>::epsilon() * std::abs(v);
+  return v * (1 + std::copysign(std::numeric_limits<double>::epsilon(), v));
 }
 
 /// All numbers from low to high. The result of an operation contains every value of the exact

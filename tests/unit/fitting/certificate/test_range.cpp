@@ -67,7 +67,19 @@ TEST(Range, WideningIsOfTheOrderOfRounding) {
   const Range sum = x + x;
   EXPECT_NEAR(sum.low, 0.2, 1e-15);
   EXPECT_NEAR(sum.high, 1.4, 1e-15);
-  EXPECT_TRUE(std::isinf(round_up(std::numeric_limits<double>::infinity())));
+}
+
+/// A bound that is infinite must not become one that is no number: that compares as no bound at
+/// all.
+TEST(Range, InfinityStaysInfinity) {
+  constexpr double kInf = std::numeric_limits<double>::infinity();
+  for (const double infinity : {kInf, -kInf}) {
+    EXPECT_EQ(round_up(infinity), infinity);
+    EXPECT_EQ(round_down(infinity), infinity);
+  }
+  const Range unbounded = Range{-kInf, kInf} + Range{1, 2};
+  EXPECT_EQ(unbounded.low, -kInf);
+  EXPECT_EQ(unbounded.high, kInf);
 }
 
 TEST(Range, HullAndCommonAreUnionAndIntersection) {
