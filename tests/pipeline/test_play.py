@@ -3,8 +3,6 @@
 """test_play.py PALPATE LIBPALPATE CHROMIUM: `palpate play` lists what is ready to be touched, writes its page without a
 campaign, shows it where there is a screen, and the page presses with the forces of libpalpate.so on the same file."""
 import ctypes
-import html
-import json
 import os
 import pathlib
 import re
@@ -14,9 +12,10 @@ import tempfile
 import time
 import unittest
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from chromium import Chromium  # noqa: E402
+
 PALPATE, LIBRARY, BROWSER = sys.argv[1:4]
-if BROWSER.endswith("-NOTFOUND"):
-    sys.exit("Chromium not found: install the Debian package chromium")
 SHIPPED = pathlib.Path(PALPATE).resolve().parent.parent / "share" / "palpate" / "libraries"
 NAMES = ["gel", "liver", "tissue"]
 
@@ -66,12 +65,10 @@ def acted(page):
     text = page.read_text()
     cut = text.rindex("</body>")
     page.write_text(f"{text[:cut]}<script>{ACT}</script>{text[cut:]}")
-    with tempfile.TemporaryDirectory() as profile:
-        shown = subprocess.run(
-            [BROWSER, "--headless", "--no-sandbox", "--disable-gpu", "--no-first-run", "--window-size=1300,900",
-             f"--user-data-dir={profile}", "--virtual-time-budget=4000", "--dump-dom", page.as_uri()],
-            capture_output=True, timeout=150, check=True).stdout.decode()
-    return shown, json.loads(html.unescape(re.search(r'<p id="said">(.*?)</p>', shown, re.S)[1]))
+    with Chromium(BROWSER, width=1300, height=900) as browser:
+        browser.play(page.as_uri())
+        said = browser.said()
+        return browser.document(), said
 
 
 def forces_of_the_runtime(file, positions):

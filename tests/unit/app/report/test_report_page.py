@@ -17,13 +17,10 @@ import sys
 import tempfile
 import unittest
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "support"))
+from chromium import Chromium  # noqa: E402
+
 WRITER, BROWSER = sys.argv[1:3]
-if BROWSER.endswith("-NOTFOUND"):
-    sys.exit("Chromium not found: install the Debian package chromium")
-FLAGS = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
-         "--disable-background-networking", "--disable-component-update", "--disable-sync",
-         "--hide-scrollbars"]
-BUDGET = 5000  # ms of the page's own time
 
 
 class Page(html.parser.HTMLParser):
@@ -59,23 +56,6 @@ class Page(html.parser.HTMLParser):
         for _, name in self.open:
             if name:
                 self.by_id[name] = self.by_id.get(name, "") + data
-
-
-def browse(path, *options, budget=BUDGET, query=""):
-    with tempfile.TemporaryDirectory() as profile:
-        done = subprocess.run([BROWSER, *FLAGS, f"--virtual-time-budget={budget}", f"--user-data-dir={profile}",
-                               *options, path.as_uri() + query],
-                              capture_output=True, timeout=120, check=True)
-    return done.stdout.decode()
-
-
-def drawn(path):
-    """The page when it is drawn: on a busy machine the browser can run out of the page's time before."""
-    for budget in (BUDGET, 4 * BUDGET, 16 * BUDGET):
-        page = Page(browse(path, "--dump-dom", budget=budget))
-        if page.root.get("data-ready") != "loading":
-            break
-    return page
 
 
 def with_other_data(page, target, change):
@@ -154,21 +134,42 @@ class ReportPage(unittest.TestCase):
         path = pathlib.Path(cls.folder.name)
         subprocess.run([WRITER, path], check=True)
         cls.path = path
-        cls.full = drawn(path / "full.html")
-        cls.unbounded = drawn(path / "unbounded.html")
-        cls.bare = drawn(path / "bare.html")
-        cls.compared = drawn(path / "compared.html")
-        cls.micro = drawn(with_other_data(path / "compared.html", path / "micro.html", to_micrometres))
-        cls.calibration = drawn(path / "calibration.html")
-        cls.many = drawn(with_other_data(path / "calibration.html", path / "many.html", to_many_sites))
-        cls.calibrated = drawn(path / "calibrated.html")
-        cls.sparse = drawn(path / "sparse.html")
-        cls.judged = drawn(path / "judged.html")
-        cls.judged_other = drawn(path / "judged-other.html")
+        cls.browser = Chromium(BROWSER, "--hide-scrollbars", width=1300, height=1200)
+        cls.full = cls.drawn(path / "full.html")
+        cls.unbounded = cls.drawn(path / "unbounded.html")
+        cls.bare = cls.drawn(path / "bare.html")
+        cls.compared = cls.drawn(path / "compared.html")
+        cls.micro = cls.drawn(with_other_data(path / "compared.html", path / "micro.html", to_micrometres))
+        cls.calibration = cls.drawn(path / "calibration.html")
+        cls.many = cls.drawn(with_other_data(path / "calibration.html", path / "many.html", to_many_sites))
+        cls.calibrated = cls.drawn(path / "calibrated.html")
+        cls.sparse = cls.drawn(path / "sparse.html")
+        cls.judged = cls.drawn(path / "judged.html")
+        cls.judged_other = cls.drawn(path / "judged-other.html")
 
     @classmethod
     def tearDownClass(cls):
+        cls.browser.close()
         cls.folder.cleanup()
+
+    @classmethod
+    def drawn(cls, path, query="", size=(None, None)):
+        """The page when it is drawn."""
+        cls.browser.fresh(*size)
+        cls.browser.open(path.as_uri() + query)
+        cls.browser.wait("document.documentElement.dataset.ready !== 'loading'")
+        return Page(cls.browser.document())
+
+    def acted(self, text, act):
+        """The page with this text after the act, and what that said."""
+        cut = text.rindex("</body>")
+        path = self.path / "acted.html"
+        path.write_text(f"{text[:cut]}<script>{act}</script>{text[cut:]}")
+        self.drawn(path)
+        said = self.browser.said()
+        page = Page(self.browser.document())
+        self.assertEqual(page.root.get("data-errors"), "0")
+        return page, said
 
     def test_a_calibration_has_data_intervals_correlations_and_profiles(self):
         for page in (self.calibration, self.calibrated):
@@ -307,13 +308,7 @@ class ReportPage(unittest.TestCase):
           said.table = document.querySelector('#curves table').innerText;
           document.body.append(Object.assign(document.createElement('p'), {id: 'said', textContent: JSON.stringify(said)}));
         }, 300));"""
-        text = (self.path / "full.html").read_text()
-        cut = text.rindex("</body>")
-        acted = self.path / "acted.html"
-        acted.write_text(f"{text[:cut]}<script>{act}</script>{text[cut:]}")
-        page = Page(browse(acted, "--dump-dom", "--window-size=1300,1200"))
-        self.assertEqual(page.root.get("data-errors"), "0")
-        said = json.loads(page.by_id["said"])
+        page, said = self.acted((self.path / "full.html").read_text(), act)
         data = json.loads(page.by_id["data"])
         slip = max(column(data["certificate"]["triangle_slip"]))
         self.assertIn(f"to {slip:.0f} N/m", said["slip"])
@@ -362,13 +357,7 @@ class ReportPage(unittest.TestCase):
           said.tip = document.querySelector('.tip').innerText;
           document.body.append(Object.assign(document.createElement('p'), {id: 'said', textContent: JSON.stringify(said)}));
         }, 300));"""
-        text = (self.path / "sparse.html").read_text()
-        cut = text.rindex("</body>")
-        acted = self.path / "sparse-acted.html"
-        acted.write_text(f"{text[:cut]}<script>{act}</script>{text[cut:]}")
-        page = Page(browse(acted, "--dump-dom", "--window-size=1300,1200"))
-        self.assertEqual(page.root.get("data-errors"), "0")
-        said = json.loads(page.by_id["said"])
+        page, said = self.acted((self.path / "sparse.html").read_text(), act)
         data = json.loads(page.by_id["data"])
         compared = {c["vertex"]: c for c in data["comparison"]["curves"] if c["kind"] == "normal"}
         worst = max(compared, key=lambda v: compared[v]["rms_jnd"])
@@ -414,20 +403,16 @@ class ReportPage(unittest.TestCase):
         width = {}
         for radius in (0.006, 0.012):
             changed = text.replace('"inclusions":[]', f'"inclusions":[{json.dumps(ball(radius))}]')
-            cut = changed.rindex("</body>")
-            acted = self.path / "included.html"
-            acted.write_text(f"{changed[:cut]}<script>{act}</script>{changed[cut:]}")
-            page = Page(browse(acted, "--dump-dom", "--window-size=1300,1200"))
-            self.assertEqual(page.root.get("data-errors"), "0")
+            page, said = self.acted(changed, act)
             self.assertIn("outline of <lump>, inside", page.text)
-            for across, down in json.loads(page.by_id["said"]):
+            for across, down in said:
                 self.assertAlmostEqual(across, down, delta=4)
                 width[radius] = across
         line = 3.4  # pixels, the width of the stroke
         self.assertAlmostEqual((width[0.012] - line) / (width[0.006] - line), 2, delta=0.1)
 
     def test_a_section_alone_is_a_figure(self):
-        page = Page(browse(self.path / "full.html", "--dump-dom", query="?only=body"))
+        page = self.drawn(self.path / "full.html", query="?only=body")
         self.assertEqual(page.root.get("data-errors"), "0")
         self.assertIn("body", page.by_id)
         for name in ("fit", "session", "certificate", "record"):
@@ -447,7 +432,8 @@ class ReportPage(unittest.TestCase):
     def test_previews_show_supports_press_zones_and_what_repair_moved(self):
         data = {}
         for name in ("preview", "preview-repaired"):
-            page = drawn(self.path / f"{name}.html")
+            page = self.drawn(self.path / f"{name}.html", size=(900, 1150))
+            self.browser.picture(self.path / f"{name}.png")
             self.assertEqual((page.root["data-ready"], page.root["data-errors"]), ("ok", "0"), name)
             data[name] = json.loads(page.by_id["data"])
         plain = data["preview"]
@@ -460,9 +446,7 @@ class ReportPage(unittest.TestCase):
         # Press zones are green; what repair moved is in the colours of the scale, up to yellow.
         green, yellow = {}, {}
         for name in data:
-            picture = self.path / f"{name}.png"
-            browse(self.path / f"{name}.html", "--window-size=900,1150", f"--screenshot={picture}")
-            pixels = list(png_pixels(picture.read_bytes()))
+            pixels = list(png_pixels((self.path / f"{name}.png").read_bytes()))
             green[name] = sum(r < 60 and 110 < g < 180 and 80 < b < 150 for r, g, b in pixels)
             yellow[name] = sum(r > 150 and g > 170 and b < 80 for r, g, b in pixels)
         self.assertGreater(green["preview"], 1000)
@@ -472,7 +456,8 @@ class ReportPage(unittest.TestCase):
     def test_the_hot_spot_is_seen(self):
         """The top of the colour map must cover some of the body, its bottom much more."""
         picture = self.path / "view.png"
-        browse(self.path / "full.html", "--window-size=900,1150", f"--screenshot={picture}")
+        self.drawn(self.path / "full.html", size=(900, 1150))
+        self.browser.picture(picture)
         pixels = list(png_pixels(picture.read_bytes()))
         hot = sum(r > 90 and g > 170 and b < 110 for r, g, b in pixels)
         cold = sum(45 < r < 80 and g < 75 and 60 < b < 140 for r, g, b in pixels)

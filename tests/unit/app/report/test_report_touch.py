@@ -8,7 +8,6 @@ scale bar, supports, the session in time, and what can be taken along.
 """
 import base64
 import csv
-import html
 import io
 import json
 import math
@@ -21,10 +20,10 @@ import tempfile
 import unittest
 import zlib
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "support"))
+from chromium import Chromium  # noqa: E402
+
 WRITER, FORCES, BROWSER = sys.argv[1:4]
-if BROWSER.endswith("-NOTFOUND"):
-    sys.exit("Chromium not found: install the Debian package chromium")
-FLAGS = ["--headless", "--no-sandbox", "--disable-gpu", "--no-first-run", "--hide-scrollbars", "--window-size=1300,900"]
 
 # Helpers of the acts. `csv` is what the page gives to download. Without a screen the browser makes hardly any frames:
 # a timer makes them, 60 in a second of the page's own time. Pictures are encoded at once: the browser's own thread does
@@ -117,9 +116,11 @@ class Acted(unittest.TestCase):
         subprocess.run([WRITER, cls.path], check=True)
         cls.text = (cls.path / "full.html").read_text()
         cls.data = json.loads(re.search(r'id="data">(.*?)</script>', cls.text, re.S)[1])
+        cls.browser = Chromium(BROWSER, "--hide-scrollbars", width=1300, height=900)
 
     @classmethod
     def tearDownClass(cls):
+        cls.browser.close()
         cls.folder.cleanup()
 
     def act(self, script, text=None, only="touch"):
@@ -127,13 +128,10 @@ class Acted(unittest.TestCase):
         cut = text.rindex("</body>")
         page = self.path / "acted.html"
         page.write_text(f"{text[:cut]}<script>{ACT % script}</script>{text[cut:]}")
-        with tempfile.TemporaryDirectory() as profile:
-            shown = subprocess.run([BROWSER, *FLAGS, f"--user-data-dir={profile}", "--virtual-time-budget=60000",
-                                    "--dump-dom", page.as_uri() + (f"?only={only}" if only else "")],
-                                   capture_output=True, timeout=150, check=True).stdout.decode()
-        said = json.loads(html.unescape(re.search(r'<p id="said"[^>]*>(.*?)</p>', shown, re.S)[1]))
+        self.browser.play(page.as_uri() + (f"?only={only}" if only else ""))
+        said = self.browser.said()
         self.assertNotIn("error", said)
-        self.assertIn('data-errors="0"', shown)
+        self.assertEqual(self.browser.value("document.documentElement.dataset.errors"), "0")
         return said
 
 
@@ -576,11 +574,10 @@ class Pictures(Acted):
         self.assertIn(f"dihedral angles {quality['smallest_dihedral']:.1f}\u00b0", said["text"])
 
     def test_the_first_printed_page_shows_the_body(self):
-        with tempfile.TemporaryDirectory() as profile:
-            pdf = pathlib.Path(profile) / "report.pdf"
-            subprocess.run([BROWSER, *FLAGS, f"--user-data-dir={profile}/p", "--virtual-time-budget=10000", "--no-pdf-header-footer",
-                            f"--print-to-pdf={pdf}", (self.path / "full.html").as_uri()], capture_output=True, timeout=150, check=True)
-            raw = pdf.read_bytes()
+        self.browser.fresh()
+        self.browser.open((self.path / "full.html").as_uri())
+        self.browser.wait("document.documentElement.dataset.ready === 'ok'")
+        raw = self.browser.printed()
         objects = dict(re.findall(rb"\n(\d+) 0 obj(.*?)endobj", raw, re.S))
         page = next(text for text in objects.values() if re.search(rb"/Type\s*/Page\b", text))
         stream = objects[re.search(rb"/Contents (\d+) 0 R", page)[1]]

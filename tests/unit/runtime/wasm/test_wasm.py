@@ -7,19 +7,18 @@ number of every step, and every vertex of the skin as it is pressed, is the same
 relaxes, to 1e-12. A library that it cannot read ends in its message.
 """
 import base64
-import html
 import json
 import pathlib
-import re
 import struct
 import subprocess
 import sys
 import tempfile
 import unittest
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "support"))
+from chromium import Chromium  # noqa: E402
+
 WRITER, WASM, RUNTIME, BROWSER = sys.argv[1:5]
-if BROWSER.endswith("-NOTFOUND"):
-    sys.exit("Chromium not found: install the Debian package chromium")
 COLUMNS = 26  # numbers of a step
 DEPTH, OFFSETS = 14, (16, 23, 24, 25)
 LARGEST = 300_000  # bytes of palpate.wasm
@@ -108,11 +107,9 @@ class Wasm(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             page = pathlib.Path(folder) / "wasm.html"
             page.write_text(text)
-            shown = subprocess.run(
-                [BROWSER, "--headless", "--no-sandbox", "--disable-gpu", "--no-first-run",
-                 f"--user-data-dir={folder}/profile", "--virtual-time-budget=60000", "--dump-dom", page.as_uri()],
-                capture_output=True, timeout=200, check=True).stdout.decode()
-        cls.said = json.loads(html.unescape(re.search(r'<p id="said">(.*?)</p>', shown, re.S)[1]))
+            with Chromium(BROWSER) as browser:
+                browser.open(page.as_uri())
+                cls.said = browser.said()
 
     def test_every_step_is_the_same_to_the_last_bit(self):
         self.assertNotIn("error", self.said)
