@@ -8,8 +8,6 @@
 namespace palpate::bench {
 namespace {
 
-constexpr double kRadius = 0.05;
-
 ResponseCurve curve(double first, double last) {
   constexpr int kKnots = 8;
   constexpr double kDepth = 0.014;
@@ -49,7 +47,7 @@ class Vertices {
     const Vec3 flat{static_cast<double>(point[0]) / n_, static_cast<double>(point[1]) / n_,
                     static_cast<double>(point[2]) / n_};
     const Vec3 out = (1.0 / norm(flat)) * flat;
-    library_.positions.push_back(kRadius * out);
+    library_.positions.push_back(kOctasphereRadius * out);
     library_.inward.push_back(-out);
     library_.responses.push_back(response(library_.positions.back()));
   }

@@ -5,7 +5,9 @@
 
 namespace palpate::bench {
 
-/// Octahedron of radius 50 mm with each face divided into n x n triangles, vertices on the sphere:
+constexpr double kOctasphereRadius = 0.05;  ///< m
+
+/// Octahedron of that radius with each face divided into n x n triangles, vertices on the sphere:
 /// 8 n^2 triangles. Every vertex has responses of 8 knots of its own, stiffness 100 to 300 N/m;
 /// coupled ones a weight of 5 knots besides.
 Library octasphere(int n, ResponseKind kind = ResponseKind::Decoupled);

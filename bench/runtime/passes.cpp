@@ -5,11 +5,12 @@
 
 #include <cmath>
 
+#include "bench/runtime/octasphere.hpp"
+
 namespace palpate::bench {
 namespace {
 
 constexpr double kSpeed = 0.1;         // m/s over the surface
-constexpr double kRadius = 0.05;       // m, of the sphere
 constexpr double kMeanRadius = 0.047;  // m: 3 mm deep
 
 Vec3 tip(int step, Motion motion) {
@@ -40,7 +41,7 @@ std::vector<Vec3> approach() {
   const Vec3 end = tip(0, Motion::Press);
   std::vector<Vec3> tips;
   for (int i = 0; i < kApproach; ++i)
-    tips.push_back((1 + (kRadius / norm(end) - 1) * (kApproach - i) / kApproach) * end);
+    tips.push_back((1 + (kOctasphereRadius / norm(end) - 1) * (kApproach - i) / kApproach) * end);
   return tips;
 }
 
