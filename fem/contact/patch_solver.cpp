@@ -50,33 +50,42 @@ bool PatchSolver::condense(std::size_t fraction) {
   core_index_.assign(order_.size(), -1);
   for (auto i = core; i != order_.end(); ++i)
     core_index_[to_index(*i)] = static_cast<int>(i - core);
-  eliminated_ = stiffness_->S(order_, order_);
-  eliminated_.diagonal() += kStiffeningFractions[fraction] * stiffness_->stiffening(order_);
+  gather_in_order();
+  eliminated_.diagonal() +=
+      (kStiffeningFractions[fraction] * stiffness_->stiffening(order_)).cast<float>();
   if (!eliminate_first(rest_, eliminated_)) return false;
-  S_ = eliminated_.bottomRightCorner(core_size(), core_size());
-  single_S_ = S_.cast<float>();
+  single_S_ = eliminated_.bottomRightCorner(core_size(), core_size());
+  S_ = single_S_.cast<double>();
   condensed_ = in_core_;
   factorized_ = false;
   fraction_ = fraction;
   return true;
 }
 
+void PatchSolver::gather_in_order() {
+  const Eigen::MatrixXd& S = stiffness_->S;
+  eliminated_.resize(size(), size());
+  for (std::size_t j = 0; j < order_.size(); ++j) {
+    const double* from = S.col(order_[j]).data();
+    float* to = eliminated_.col(static_cast<Eigen::Index>(j)).data();
+    for (std::size_t i = j; i < order_.size(); ++i) to[i] = static_cast<float>(from[order_[i]]);
+  }
+}
+
 bool PatchSolver::factorize(const PatchContact& core, const ToolContact& contact,
                             const Eigen::VectorXd& d) {
+  factorized_ = false;
   for (const bool geometric : {true, false}) {
-    single_factor_ = single_S_;
-    core.add_hessian(contact, d, geometric, single_factor_);
-    in_single_precision_ = factorize_in_place(single_factor_);
-    if (in_single_precision_) return factorized_ = true;
+    if (factorized_) break;
+    factor_ = single_S_;
+    core.add_hessian(contact, d, geometric, factor_);
+    factorized_ = factorize_in_place(factor_);
   }
-  double_factor_ = S_;
-  core.add_hessian(contact, d, false, double_factor_);
-  return factorized_ = factorize_in_place(double_factor_);
+  return factorized_;
 }
 
 Eigen::VectorXd PatchSolver::newton_step(const Eigen::VectorXd& g) const {
-  if (!in_single_precision_) return -solve_factorized(double_factor_, g);
-  return -solve_factorized(single_factor_, g.cast<float>()).cast<double>();
+  return -solve_factorized(factor_, g.cast<float>()).cast<double>();
 }
 
 bool PatchSolver::minimize(const PatchContact& core, const ToolContact& contact,
@@ -119,14 +128,16 @@ bool PatchSolver::minimize_on_core(const ContactPatch& patch, const ToolContact&
                                    const Eigen::VectorXd& load, double tolerance,
                                    Eigen::VectorXd& d) {
   Eigen::VectorXd ordered = load(order_), on_core = d(order_).tail(core_size());
+  Eigen::VectorXf on_rest = ordered.head(rest_).cast<float>();
   const auto coupling = eliminated_.bottomLeftCorner(core_size(), rest_);
-  solve_first_forward(eliminated_, rest_, ordered);
-  const Eigen::VectorXd condensed_load = ordered.tail(core_size()) - coupling * ordered.head(rest_);
+  solve_first_forward(eliminated_, rest_, on_rest);
+  const Eigen::VectorXd condensed_load =
+      ordered.tail(core_size()) - (coupling * on_rest).cast<double>();
   const bool convex =
       minimize(patch.restricted_to(core_index_), contact, condensed_load, tolerance, on_core);
-  ordered.head(rest_) -= coupling.transpose() * on_core;
-  ordered.tail(core_size()) = on_core;
-  solve_first_backward(eliminated_, rest_, ordered);
+  on_rest -= coupling.transpose() * on_core.cast<float>();
+  solve_first_backward(eliminated_, rest_, on_rest);
+  ordered << on_rest.cast<double>(), on_core;
   d(order_) = ordered;
   return convex;
 }
@@ -144,7 +155,8 @@ std::optional<Eigen::VectorXd> PatchSolver::minimum(const ContactPatch& patch,
     }
     expect(patch, contact, d);
     if (in_core_ != condensed_) continue;
-    next_fraction_ = sufficient_fraction_ = fraction;
+    next_fraction_ = fraction;
+    if (fraction > 0) sufficient_fraction_ = fraction;
     return d;
   }
   return std::nullopt;

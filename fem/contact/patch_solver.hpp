@@ -34,16 +34,19 @@ class PatchSolver {
     patch.mark_touched(contact, d, in_core_);
   }
 
-  /// From `d`, until the gradient is within `tolerance`, N. Nothing where the model is not convex
-  /// with all of the stiffening either.
+  /// From `d`, until the gradient is within `tolerance`, N, or within what rounding to single
+  /// precision leaves of it, some 1e-6. Nothing where the model is not convex with all of the
+  /// stiffening either.
   std::optional<Eigen::VectorXd> minimum(const ContactPatch& patch, const ToolContact& contact,
                                          const Eigen::VectorXd& load, Eigen::VectorXd d,
                                          double tolerance);
 
  private:
   /// Eliminates the unknowns outside the core from S, of which this fraction of the stiffening is
-  /// added to the diagonal; false where that is not positive definite.
+  /// added to the diagonal, in single precision; false where that is not positive definite.
   bool condense(std::size_t fraction);
+  /// The lower triangle of S, those outside the core first.
+  void gather_in_order();
   /// The fraction to try where this one does not make the model convex.
   std::size_t stiffer_than(std::size_t fraction) const;
   /// False where the model is not convex; d is then where that was found.
@@ -53,8 +56,8 @@ class PatchSolver {
   bool minimize(const PatchContact& core, const ToolContact& contact, const Eigen::VectorXd& load,
                 double tolerance, Eigen::VectorXd& d);
   /// Factorizes S and the Hessian of the contact, in single precision, which takes half the time;
-  /// without the geometric term of the contact, which can be negative, where that fails, and then
-  /// in double precision. False when all fail.
+  /// without the geometric term of the contact, which can be negative, where that fails. False when
+  /// both fail.
   bool factorize(const PatchContact& core, const ToolContact& contact, const Eigen::VectorXd& d);
   /// -H^-1 g with the last factor.
   Eigen::VectorXd newton_step(const Eigen::VectorXd& g) const;
@@ -67,16 +70,14 @@ class PatchSolver {
   std::vector<char> condensed_;          ///< in_core_ at the last condense()
   std::size_t fraction_ = 0;             ///< of the last condense()
   std::size_t next_fraction_ = 0;        ///< to begin with: of S none, then what sufficed
-  std::size_t sufficient_fraction_ = 0;  ///< of the last minimum, with this S or another
+  std::size_t sufficient_fraction_ = 0;  ///< of the last minimum with any, of this S or another
   std::vector<int> order_;               ///< unknowns of the patch: those outside the core first
   std::vector<int> core_index_;          ///< of the unknowns of the patch, -1: outside
   Eigen::Index rest_ = 0;                ///< how many are outside
-  Eigen::MatrixXd eliminated_;           ///< in that order, see eliminate_first()
+  Eigen::MatrixXf eliminated_;           ///< in that order, see eliminate_first()
   Eigen::MatrixXd S_;                    ///< of the core, lower triangle
   Eigen::MatrixXf single_S_;             ///< S_ in single precision
-  Eigen::MatrixXf single_factor_;        ///< of S_ and the contact, at the last factorize()
-  Eigen::MatrixXd double_factor_;        ///< in its place where single precision does not suffice
-  bool in_single_precision_ = false;     ///< the last factor
+  Eigen::MatrixXf factor_;               ///< of S_ and the contact, at the last factorize()
   bool factorized_ = false;              ///< whether factor_ is one with the present S_
 };
 

@@ -119,13 +119,14 @@ double NewtonSolver::error_of_solution() {
 
 bool NewtonSolver::factorize_as_precisely_as_needed() {
   if (precision_ == Precision::Single) {
-    bool good = factor_->factorize(K_, Precision::Single);
-    if (good && !precision_is_checked_) {
-      good = error_of_solution() < kMostErrorOfSolution;
-      precision_ = good ? Precision::Single : Precision::Double;
+    if (factor_->factorize(K_, Precision::Single)) {
+      if (!precision_is_checked_ && error_of_solution() >= kMostErrorOfSolution)
+        precision_ = Precision::Double;
       precision_is_checked_ = true;
+      if (precision_ == Precision::Single) return true;
+    } else if (precision_is_checked_) {
+      return false;  // it is A that is not positive definite, not its rounding
     }
-    if (good) return true;
   }
   return factor_->factorize(K_, Precision::Double);
 }

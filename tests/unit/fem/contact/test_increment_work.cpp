@@ -85,11 +85,16 @@ Step one_step(LinearSolid& solid, double from, double to) {
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(patch.size());
   const auto equilibrium = [&](double depth) {
     solid.press(depth);
-    patch.start_from(solid.contact, solid.rest);
     const PatchStiffness stiffness{S, zero};
     PatchSolver solver;
     solver.use(stiffness);
-    return solver.minimum(patch, solid.contact, zero, zero, 1e-12).value();
+    Eigen::VectorXd d = zero;
+    for (int i = 0; i < 3; ++i) {  // what rounding leaves of one step is left to the next
+      patch.start_from(solid.contact, solid.moved(patch, d));
+      d += solver.minimum(patch, solid.contact, -S * d, zero, 1e-12).value();
+    }
+    patch.start_from(solid.contact, solid.rest);
+    return d;
   };
   const auto stored = [&](const Eigen::VectorXd& d) {
     return 0.5 * d.dot(S * d) + patch.energy(solid.contact, d);
