@@ -6,7 +6,7 @@
 set(CMAKE_UNITY_BUILD ${PALPATE_UNITY})
 set(CMAKE_UNITY_BUILD_BATCH_SIZE 8)
 
-# palpate_alone(file...): with a local name that another file of the target has, too.
+# palpate_alone(file...): compiles these files apart, which have a local name that another file of the target has, too.
 function(palpate_alone)
   if(ARGN)
     set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)

@@ -110,9 +110,9 @@ void describe(V& v, FitDocument& d) {
   v.text(d.source, {"source", "of the data", kRequired});
   v.text(d.licence, {"licence", "of the data", kRequired});
   v.text(d.description, {"description", "anything else"});
-  v.section("fit", d.law, kRequired, "");
+  v.section("fit", d.law, kRequired, "[fit], the law whose constants are identified");
   v.sections("constant", d.constants, kOptional, "");
-  v.sections("test", d.tests, kRequired, "");
+  v.sections("test", d.tests, kRequired, "[[test]], a record and how it was tested");
 }
 
 double bound_of(const std::string& text, bool is_stress, const std::string& where) {

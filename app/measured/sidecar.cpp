@@ -218,9 +218,10 @@ void describe(V& v, Sidecar& s) {
   if (s.lists_tools)
     v.sections("tool", s.tools, kRequired, "");
   else
-    v.section("tool", s.tools.emplace_back(), kRequired, "");
+    v.section("tool", s.tools.emplace_back(), kRequired, "[tool], shape and size of what pressed");
   v.section("machine", s.machine, kOptional, "");
-  v.section("columns", s.columns, kRequired, "");
+  v.section("columns", s.columns, kRequired,
+            "[columns], with the names of the columns of the records (docs/measured.md)");
   v.sections("column", s.declared, kOptional, "");
   v.section("contact", s.contact, kOptional, "");
   v.section("baseline", s.baseline, kOptional, "");

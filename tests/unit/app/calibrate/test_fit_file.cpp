@@ -64,6 +64,8 @@ TEST_F(FitFiles, ConstantsAreThoseOfTheCases) {
 }
 
 TEST_F(FitFiles, OfLawsThatCannotBeCalibratedAreRefused) {
+  EXPECT_THAT(refusal("law = \"yeoh\"\n", ""),
+              HasSubstr("key 'test' is missing; add it: [[test]], a record"));
   EXPECT_THAT(refusal("law = \"hooke\"\n"), HasSubstr("hooke"));
   for (const char* law : {"saint-venant-kirchhoff", "holzapfel-gasser-ogden"})
     EXPECT_THAT(refusal("law = \"" + std::string(law) + "\"\n"),

@@ -70,6 +70,12 @@ TEST(Sidecar, RefusesWhatItCannotUse) {
                       kColumns + kPress),
               HasSubstr("'tool.friction' is missing; add it: friction of the press; "
                         "one of frictionless, no-slip"));
+  EXPECT_THAT(refusal("name = \"a\"\nspecimen = \"b\"\nsource = \"c\"\nlicence = \"d\"\n" +
+                      kColumns + kPress),
+              HasSubstr("key 'tool' is missing; add it: [tool], shape and size"));
+  EXPECT_THAT(
+      refusal(kHead + kPress),
+      HasSubstr("key 'columns' is missing; add it: [columns], with the names of the columns"));
   EXPECT_THAT(refusal(kHead + "[columns]\nforce = \"f\"\n" + kPress),
               HasSubstr("key 'columns.displacement' is missing"));
   EXPECT_THAT(refusal(kHead + kColumns + "[[press]]\nfile = \"a.csv\"\n"),
