@@ -278,7 +278,7 @@ class Manners(unittest.TestCase):
                           ["simulate", self.case, "--out", out], ["report", self.case, "--out", out],
                           ["build", self.case, "--out", out / "estimated", "--estimate"],
                           ["check", self.root / "block.off", "--unit", "mm"], ["doctor"],
-                          ["init", self.root / "block.off", "-o", self.root / f"first{columns}.toml"],
+                          ["init", self.root / "block.off", "--minutes", "0", "-o", self.root / f"first{columns}.toml"],
                           ["biuld"], ["mesh", self.root / "block.off"], *(["inspect", file] for file in files)):
                 shown = on_a_terminal(words, columns)[1]
                 self.assertGreater(len(shown), 20)

@@ -29,7 +29,7 @@ def by_default(case):
     for section in ("tool", "fit", "simulate", "indentation", "mesh"):
         case = re.sub(rf"^\[{section}\]\n(?:.+\n)*\n?", "", case, flags=re.MULTILINE)
     return case + ("\n[mesh]\ninterior_coarsening = 3.0\n"
-                   "\n[[press]]\nshape = \"sphere\"\ncentre = [\"25 mm\", \"25 mm\", \"20 mm\"]\nradius = \"8 mm\"\n"
+                   "\n[[press]]\nshape = \"sphere\"\ncentre = [\"25 mm\", \"25 mm\", \"20 mm\"]\nradius = \"6 mm\"\n"
                    "\n[indentation]\nincrements = 4\nlateral_increments = 2\n")
 
 

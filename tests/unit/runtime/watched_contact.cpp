@@ -28,16 +28,24 @@ struct CurvePoint {
 /// Force and energy of a stored curve at d, from its slopes: f' is linear between knots.
 CurvePoint curve_at(const ResponseCurve& curve, double d) {
   CurvePoint at;
-  for (std::size_t k = 0; k < curve.knot.size() && d > static_cast<double>(curve.knot[k]); ++k) {
-    const bool last = k + 1 == curve.knot.size();
-    const double start = static_cast<double>(curve.knot[k]);
-    const double s0 = static_cast<double>(curve.slope[k]);
-    const double piece = last ? 1 : static_cast<double>(curve.knot[k + 1]) - start;
-    const double rate = last ? 0 : (static_cast<double>(curve.slope[k + 1]) - s0) / piece;
-    const double x = last ? d - start : std::min(d - start, piece);
-    at.energy += x * (at.force + x * (s0 / 2 + x * rate / 6));
-    at.force += x * (s0 + x * rate / 2);
+  if (curve.knot.empty() || !(d > static_cast<double>(curve.knot[0]))) return at;
+  double start = static_cast<double>(curve.knot[0]), s0 = static_cast<double>(curve.slope[0]);
+  double rate = 0;
+  for (std::size_t k = 1; k < curve.knot.size(); ++k) {
+    const double end = static_cast<double>(curve.knot[k]), s1 = static_cast<double>(curve.slope[k]);
+    const double piece = end - start;
+    if (d <= end) {
+      rate = (s1 - s0) / piece;
+      break;
+    }
+    at.energy += piece * (at.force + piece * (2 * s0 + s1) / 6);
+    at.force += piece * (s0 + s1) / 2;
+    start = end;
+    s0 = s1;
   }
+  const double x = d - start;
+  at.energy += x * (at.force + x * (s0 / 2 + x * rate / 6));
+  at.force += x * (s0 + x * rate / 2);
   return at;
 }
 
