@@ -14,6 +14,7 @@
 #include "app/report/touch.hpp"
 #include "fitting/response/accuracy.hpp"
 #include "fitting/response/fit_errors.hpp"
+#include "fitting/response/leaning_response.hpp"
 #include "format/error.hpp"
 #include "format/to_index.hpp"
 #include "mesher/geometry/quality.hpp"
@@ -139,21 +140,35 @@ json vertex_data(const ReportInput& input, const std::vector<PeakForce>& peaks) 
           {"lateral_peak", column(lateral_peak)}};
 }
 
+/// What is felt along a drag more than at its start, N: NaN of other paths and without a response.
+float rendered_drag(const Library& library, const CurvePath& path, const NodeResponse& node,
+                    double displacement) {
+  if (path.kind != PathKind::Lateral || node.status == ResponseStatus::Hole)
+    return std::numeric_limits<float>::quiet_NaN();
+  const fitting::LeaningResponse rendered(node, library.kind);
+  return static_cast<float>(rendered.drag_force(path.lateral_depth, displacement, path.direction));
+}
+
+}  // namespace
+
 json sample_data(const Curves& curves, const Library& library) {
   std::vector<std::int32_t> vertex;
   std::vector<std::uint8_t> kind;
   std::vector<std::uint32_t> offset{0};
-  std::vector<float> lateral_depth, displacement, force, volume_change;
+  std::vector<float> lateral_depth, displacement, force, rendered, volume_change;
   for (const SiteCurves& site : curves.sites) {
     for (const CurvePath& path : site.paths) {
       vertex.push_back(site.vertex);
       kind.push_back(static_cast<std::uint8_t>(path.kind));
       lateral_depth.push_back(static_cast<float>(path.lateral_depth));
-      const Vec3& axis =
-          path.kind == PathKind::Normal ? library.inward[to_index(site.vertex)] : path.direction;
+      const NodeResponse& node = library.responses[to_index(site.vertex)];
       for (const CurveSample& sample : path.samples) {
         displacement.push_back(static_cast<float>(sample.displacement));
-        force.push_back(static_cast<float>(dot(sample.force, axis)));
+        force.push_back(static_cast<float>(
+            path.kind == PathKind::Normal
+                ? dot(sample.force, library.inward[to_index(site.vertex)])
+                : dot(sample.force - path.samples.front().force, path.direction)));
+        rendered.push_back(rendered_drag(library, path, node, sample.displacement));
         volume_change.push_back(static_cast<float>(sample.volume_change));
       }
       offset.push_back(static_cast<std::uint32_t>(displacement.size()));
@@ -165,8 +180,12 @@ json sample_data(const Curves& curves, const Library& library) {
           {"offset", column(offset)},
           {"displacement", column(displacement)},
           {"force", column(force)},
+          {"rendered", column(rendered)},
+          {"coupled", library.kind == ResponseKind::Coupled},
           {"volume_change", column(volume_change)}};
 }
+
+namespace {
 
 json balance_data(const Curves& curves) {
   std::vector<float> difference;

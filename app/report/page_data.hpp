@@ -14,6 +14,10 @@ namespace palpate::report {
 /// @throws Error(Configuration) when the artifacts do not fit together.
 nlohmann::json page_data(const ReportInput& input);
 
+/// The paths of all sites, and what is rendered in their states: of a drag the force along it more
+/// than at its start, N. Columns of displacement, force, rendered and volume_change from `offset`.
+nlohmann::json sample_data(const Curves& curves, const Library& library);
+
 /// Name, sizes and regions of a body.
 nlohmann::json body_data(const Body& body);
 /// Index of each of the triangles in the library, -1 where the library lacks it.

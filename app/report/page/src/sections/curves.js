@@ -9,14 +9,15 @@ import * as units from '../units.js';
 const NORMAL = 0, LATERAL = 1;
 const STEPS = 96;
 
-/** Sampled paths of a node: [{x, y}] in the units of the axes. */
+/** Sampled paths of a node, in the units of the axes: [{x, y, rendered}]; y of a drag counts from its start. */
 function samples(data, vertex, kind, { length, force }) {
   const { samples: s } = data;
   const paths = [];
   for (let p = 0; p < s.vertex.length; ++p) {
     if (s.vertex[p] !== vertex || s.kind[p] !== kind) continue;
     const [from, to] = [s.offset[p], s.offset[p + 1]];
-    paths.push({ x: Array.from(s.displacement.subarray(from, to), (d) => d * length.factor), y: Array.from(s.force.subarray(from, to), (f) => f * force.factor) });
+    paths.push({ x: Array.from(s.displacement.subarray(from, to), (d) => d * length.factor), y: Array.from(s.force.subarray(from, to), (f) => f * force.factor),
+      rendered: Array.from(s.rendered.subarray(from, to), (f) => f * force.factor) });
   }
   return paths;
 }
@@ -41,17 +42,22 @@ function rendered(columns, vertex, { length, force }) {
   return { x: x.map((d) => d * length.factor), y: x.map((d) => responseForce(columns, vertex, d) * force.factor) };
 }
 
+/** What is rendered of a node: its normal response; along the travel of each of its drags at their depths, or, where a
+ *  node has none and no depth matters, the lateral response. */
+function lines(data, vertex, kind, axes) {
+  const drags = kind === LATERAL ? samples(data, vertex, kind, axes).filter((path) => path.rendered.every(Number.isFinite)) : [];
+  if (drags.length) return drags.map(({ x, rendered: y }) => ({ x, y }));
+  if (kind === LATERAL && data.samples.coupled) return [];
+  return [rendered(kind === NORMAL ? data.normal : data.lateral, vertex, axes)].filter(Boolean);
+}
+
 function sets(data, shown, beside, kind, axes) {
-  const columns = kind === NORMAL ? data.normal : data.lateral;
   const out = [];
-  for (const vertex of beside) {
-    const line = rendered(columns, vertex, axes);
-    if (line) out.push({ label: `node ${vertex}, neighbour`, colour: 'muted', width: 1, ...line });
-  }
+  for (const vertex of beside)
+    for (const line of lines(data, vertex, kind, axes)) out.push({ label: `node ${vertex}, neighbour`, colour: 'muted', width: 1, ...line });
   for (const { vertex, colour } of shown) {
-    const line = rendered(columns, vertex, axes);
-    if (line) out.push({ label: `node ${vertex}, fitted`, colour, ...line });
-    for (const path of samples(data, vertex, kind, axes)) out.push({ label: `node ${vertex}, computed`, colour, markers: true, ...path });
+    for (const line of lines(data, vertex, kind, axes)) out.push({ label: `node ${vertex}, fitted`, colour, ...line });
+    for (const { x, y } of samples(data, vertex, kind, axes)) out.push({ label: `node ${vertex}, computed`, colour, markers: true, x, y });
   }
   return out;
 }
@@ -75,11 +81,11 @@ export class Curves {
     this.axes = { length: units.axis.length(data.key.depth), force: units.axis.force(data.key.max_force) };
     const { length, force } = this.axes;
     this.normal = curvePlot('Normal response: along the press direction', `Depth (${length.name})`, `Force (${force.name})`, 230);
-    this.lateral = curvePlot('Lateral response: along the travel, at a lateral depth', `Lateral deflection (${length.name})`, `Force (${force.name})`, 210);
+    this.lateral = curvePlot('Lateral response: along each drag, from its start', `Lateral deflection (${length.name})`, `Force (${force.name})`, 210);
     this.neighbours = false;
     this.legend = el('div', {});
     this.element = el('div', { id: 'curves' }, this.normal.element, el('div', { class: 'lateral' }, this.lateral.element), this.legend,
-      paragraph('Markers: computed states. Lines: the fitted, rendered response. Dashed: the depth of the picture, to which the stiffness and the change of the volume of the whole body belong.', 'note'),
+      paragraph('Markers: computed states. Lines: the rendered response, of drags at the depths and azimuths that were computed. Dashed: the depth of the picture, to which the stiffness and the change of the volume of the whole body belong.', 'note'),
       this.chooser());
     nodes.onChange(() => this.refresh());
     this.refresh();
