@@ -165,9 +165,8 @@ json sample_data(const Curves& curves, const Library& library) {
       for (const CurveSample& sample : path.samples) {
         displacement.push_back(static_cast<float>(sample.displacement));
         force.push_back(static_cast<float>(
-            path.kind == PathKind::Normal
-                ? dot(sample.force, library.inward[to_index(site.vertex)])
-                : dot(sample.force - path.samples.front().force, path.direction)));
+            path.kind == PathKind::Normal ? dot(sample.force, library.inward[to_index(site.vertex)])
+                                          : response_force(path, sample)));
         rendered.push_back(rendered_drag(library, path, node, sample.displacement));
         volume_change.push_back(static_cast<float>(sample.volume_change));
       }

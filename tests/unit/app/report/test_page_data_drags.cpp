@@ -1,23 +1,14 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <gtest/gtest.h>
 
-#include <cstring>
-#include <string>
 #include <vector>
 
 #include "app/report/page_data.hpp"
-#include "format/base64.hpp"
 #include "tests/support/bodies.hpp"
+#include "tests/unit/app/report/columns.hpp"
 
 namespace palpate::report {
 namespace {
-
-std::vector<double> numbers(const nlohmann::json& column) {
-  const std::string bytes = from_base64(column.front().get<std::string>()).value();
-  std::vector<float> values(bytes.size() / sizeof(float));
-  std::memcpy(values.data(), bytes.data(), bytes.size());
-  return {values.begin(), values.end()};
-}
 
 /// A drag at 2 mm that starts with a force against it, as where tissue leans.
 SiteCurves dragged_site() {
@@ -49,12 +40,13 @@ TEST(SampleData, HasADragAtItsDepthFromItsStart) {
   Curves curves;
   curves.sites = {dragged_site()};
   const nlohmann::json data = sample_data(curves, library);
-  const std::vector<double> d = numbers(data.at("displacement")), force = numbers(data.at("force"));
-  const std::vector<double> rendered = numbers(data.at("rendered"));
+  const std::vector<float> displacement = floats(data.at("displacement"));
+  const std::vector<float> force = floats(data.at("force")), rendered = floats(data.at("rendered"));
   ASSERT_EQ(rendered.size(), 3U);
   for (std::size_t i = 0; i < 3; ++i) {
-    EXPECT_NEAR(force[i], 70 * d[i], 1e-7);
-    EXPECT_NEAR(rendered[i], 0.6 * 120 * d[i], 1e-6);
+    const auto d = static_cast<double>(displacement[i]);
+    EXPECT_NEAR(static_cast<double>(force[i]), 70 * d, 1e-7);
+    EXPECT_NEAR(static_cast<double>(rendered[i]), 0.6 * 120 * d, 1e-6);
   }
   EXPECT_TRUE(data.at("coupled").get<bool>());
 }

@@ -3,13 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <string>
 #include <vector>
 
 #include "app/report/page_data.hpp"
-#include "format/base64.hpp"
 #include "tests/support/bodies.hpp"
+#include "tests/unit/app/report/columns.hpp"
 
 namespace palpate::report {
 namespace {
@@ -21,13 +19,6 @@ Library relaxing_plate() {
   return test::relaxing(
       test::plate(8, 0.08, [](const Vec3&) { return test::wall_response(170, 120); }), {0.1, 2},
       true);
-}
-
-std::vector<float> floats(const nlohmann::json& column) {
-  const std::string bytes = from_base64(column.front().get<std::string>()).value();
-  std::vector<float> values(bytes.size() / sizeof(float));
-  std::memcpy(values.data(), bytes.data(), bytes.size());
-  return values;
 }
 
 double largest(const nlohmann::json& press) {
