@@ -20,19 +20,52 @@ namespace {
 /// double precision: it would cost iterations.
 constexpr double kMostErrorOfSolutions = 0.03;
 
-/// One right-hand side in each SIMD lane; the compiler splits it where registers are narrower.
-typedef float Pack __attribute__((vector_size(kBatch * sizeof(float)), aligned(4), may_alias));
+#if defined(__AVX512F__)
+constexpr int kRegister = 16;
+#elif defined(__AVX__)
+constexpr int kRegister = 8;
+#else
+constexpr int kRegister = 4;
+#endif
+/// Numbers in a register.
+typedef float Register
+    __attribute__((vector_size(kRegister * sizeof(float)), aligned(4), may_alias));
+/// Columns of a panel whose unknowns stay in registers, beside what is subtracted from them, while
+/// its rows pass.
+constexpr int kColumnsAtOnce = kRegister == kBatch ? 16 : 4;
+/// Rows that stay in the first cache while the columns of a panel take turns.
+constexpr int kRowsAtOnce = kRegister == kBatch ? std::numeric_limits<int>::max() : 64;
 
-inline Pack& pack(float* y, int row) {
-  return *reinterpret_cast<Pack*>(y + to_index(row) * kBatch);
-}
+/// One right-hand side in each lane; in parts, as GCC keeps vectors wider than registers in memory.
+struct Pack {
+  static constexpr int kParts = kBatch / kRegister;
+  Register part[kParts];
 
-/// The unknowns of a panel, in registers.
-template <int W>
-struct Packs {
-  Pack of[to_index(W)];
-  Pack& operator[](int k) { return of[k]; }
+  static Pack at(const float* y) {
+    Pack p;
+    for (Register& own : p.part) {
+      own = *reinterpret_cast<const Register*>(y);
+      y += kRegister;
+    }
+    return p;
+  }
+  void store(float* y) const {
+    for (const Register& own : part) {
+      *reinterpret_cast<Register*>(y) = own;
+      y += kRegister;
+    }
+  }
+  void subtract(float factor, const Pack& other) {
+    for (int i = 0; i < kParts; ++i) part[i] -= factor * other.part[i];
+  }
+  void multiply(float factor) {
+    for (int i = 0; i < kParts; ++i) part[i] *= factor;
+  }
 };
+
+inline float* pack(float* y, int row) {
+  return y + to_index(row) * kBatch;
+}
 
 // A supernode is stored as panels of up to sixteen columns, one after the other, each by rows: its
 // own triangle as a square, then every row of the supernode below that. Both sweeps thus read the
@@ -74,40 +107,59 @@ std::size_t panel_numbers(int columns, int rows) {
 template <int W>
 void forward_panel(const float* panel, float* own, int inside, const int* rows, int below,
                    float* y) {
-  Packs<W> x;
+  Pack x[W];
   for (int k = 0; k < W; ++k, panel += W) {
-    x[k] = pack(own, k);
-    for (int j = 0; j < k; ++j) x[k] -= panel[j] * x[j];
-    x[k] *= 1.0f / panel[k];
-    pack(own, k) = x[k];
+    x[k] = Pack::at(pack(own, k));
+    for (int j = 0; j < k; ++j) x[k].subtract(panel[j], x[j]);
+    x[k].multiply(1.0f / panel[k]);
+    x[k].store(pack(own, k));
   }
-  const auto subtract_from = [&](Pack& target) {
-    Pack sum = target;
-    for (int k = 0; k < W; ++k) sum -= panel[k] * x[k];
-    target = sum;
+  const auto subtract_from = [&](float* target) {
+    Pack sum = Pack::at(target);
+    for (int k = 0; k < W; ++k) sum.subtract(panel[k], x[k]);
+    sum.store(target);
     panel += W;
   };
   for (int r = 0; r < inside; ++r) subtract_from(pack(own, W + r));
   for (int r = 0; r < below; ++r) subtract_from(pack(y, rows[r]));
 }
 
+/// Subtracts from the unknowns of a panel the products of `count` rows and the solutions there,
+/// which are at solution(row).
+template <int W, class Solution>
+void subtract_rows(const float* row, int count, Solution&& solution, float* own) {
+  constexpr int kColumns = std::min(W, kColumnsAtOnce);
+  for (int begin = 0; begin < count;) {
+    const int end = begin + std::min(count - begin, kRowsAtOnce);
+    for (int first = 0; first < W; first += kColumns) {
+      Pack x[kColumns];
+      for (int k = 0; k < kColumns; ++k) x[k] = Pack::at(pack(own, first + k));
+      for (int r = begin; r < end; ++r) {
+        const Pack below = Pack::at(solution(r));
+        const float* factor = row + to_index(r) * to_index(W) + first;
+        for (int k = 0; k < kColumns; ++k) x[k].subtract(factor[k], below);
+      }
+      for (int k = 0; k < kColumns; ++k) x[k].store(pack(own, first + k));
+    }
+    begin = end;
+  }
+}
+
 /// The same for L^T x = y.
 template <int W>
 void backward_panel(const float* panel, float* own, int inside, const int* rows, int below,
                     float* y) {
-  Packs<W> x;
-  for (int k = 0; k < W; ++k) x[k] = pack(own, k);
   const float* row = panel + to_index(W) * to_index(W);
-  const auto subtract = [&](const Pack& value) {
-    for (int k = 0; k < W; ++k) x[k] -= row[k] * value;
-    row += W;
-  };
-  for (int r = 0; r < inside; ++r) subtract(pack(own, W + r));
-  for (int r = 0; r < below; ++r) subtract(pack(y, rows[r]));
+  subtract_rows<W>(
+      row, inside, [&](int r) { return pack(own, W + r); }, own);
+  row += to_index(W) * to_index(inside);
+  subtract_rows<W>(
+      row, below, [&](int r) { return pack(y, rows[r]); }, own);
   for (int k = W; k-- > 0;) {
-    for (int j = k + 1; j < W; ++j) x[k] -= panel[j * W + k] * x[j];
-    x[k] *= 1.0f / panel[k * W + k];
-    pack(own, k) = x[k];
+    Pack x = Pack::at(pack(own, k));
+    for (int j = k + 1; j < W; ++j) x.subtract(panel[j * W + k], Pack::at(pack(own, j)));
+    x.multiply(1.0f / panel[k * W + k]);
+    x.store(pack(own, k));
   }
 }
 
