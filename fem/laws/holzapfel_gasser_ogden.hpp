@@ -38,7 +38,7 @@ class HolzapfelGasserOgden : public LogQuadraticVolume {
 
   template <class T>
   T psi(const Tensor2<T>& F, const T& J, const Fibres<T>& a) const {
-    const T scale = power_of(J, -2.0 / 3.0);
+    const T scale = isochoric_scale(J);
     T sum = (0.5 * k_.c) * (scale * double_contraction(F, F) - 3.0);
     for (int family = 0; family < field_.families; ++family) {
       const Tensor2<T> M = product(F, structure(a[static_cast<std::size_t>(family)]));
@@ -53,7 +53,7 @@ class HolzapfelGasserOgden : public LogQuadraticVolume {
   template <class T>
   Tensor2<T> piola(const Tensor2<T>& F, const Tensor2<T>& cof, const T& J,
                    const Fibres<T>& a) const {
-    const T scale = power_of(J, -2.0 / 3.0);
+    const T scale = isochoric_scale(J);
     Tensor2<T> P = slope(F, T(double_contraction(F, F)), cof, J);
     for (T& entry : P) entry = (0.5 * k_.c) * scale * entry;
     for (int family = 0; family < field_.families; ++family) {
@@ -70,7 +70,7 @@ class HolzapfelGasserOgden : public LogQuadraticVolume {
   template <class T>
   void add_tangent(const Tensor2<T>& F, const Tensor2<T>& cof, const T& J, const Fibres<T>& a,
                    Tensor4<T>& A) const {
-    const T scale = power_of(J, -2.0 / 3.0);
+    const T scale = isochoric_scale(J);
     Tensor2<T> G;
     for (std::size_t i = 0; i < 9; ++i) G[i] = cof[i] / J;
     add_quadratic_tangent(T((0.5 * k_.c) * scale), identity<T>(), F, T(double_contraction(F, F)), G,

@@ -88,7 +88,7 @@ class InvariantLaw : public LogQuadraticVolume {
   /// Isochoric energy density, J/m^3.
   template <class T>
   T psi(const Tensor2<T>& F, const T& J) const {
-    const T scale = power_of(J, -2.0 / 3.0), I1 = double_contraction(F, F);
+    const T scale = isochoric_scale(J), I1 = double_contraction(F, F);
     const T x = scale * I1 - 3.0;
     if constexpr (!Energy::kSecond) {
       return energy_.value(x, x);
@@ -137,7 +137,7 @@ class InvariantLaw : public LogQuadraticVolume {
   template <class T>
   static IsochoricInvariants<T> invariants(const Tensor2<T>& F, const Tensor2<T>& cof, const T& J) {
     IsochoricInvariants<T> v;
-    v.scale1 = power_of(J, -2.0 / 3.0);
+    v.scale1 = isochoric_scale(J);
     v.I1 = double_contraction(F, F);
     v.x = v.scale1 * v.I1 - 3.0;
     for (std::size_t i = 0; i < 9; ++i) {

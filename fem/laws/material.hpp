@@ -61,13 +61,13 @@ class NeoHookean : public LogQuadraticVolume {
   /// Isochoric energy density, J/m^3.
   template <class T>
   T psi(const Tensor2<T>& F, const T& J) const {
-    return (0.5 * mu_) * (power_of(J, -2.0 / 3.0) * double_contraction(F, F) - 3.0);
+    return (0.5 * mu_) * (isochoric_scale(J) * double_contraction(F, F) - 3.0);
   }
 
   /// Isochoric first Piola-Kirchhoff stress: mu J^{-2/3} (F - (I1/3) F^-T), Pa.
   template <class T>
   Tensor2<T> piola(const Tensor2<T>& F, const Tensor2<T>& cof, const T& J) const {
-    const T scale = mu_ * power_of(J, -2.0 / 3.0);
+    const T scale = mu_ * isochoric_scale(J);
     const T third = double_contraction(F, F) / (3.0 * J);
     Tensor2<T> P;
     for (std::size_t i = 0; i < 9; ++i) P[i] = scale * (F[i] - third * cof[i]);
@@ -78,7 +78,7 @@ class NeoHookean : public LogQuadraticVolume {
   ///   mu J^{-2/3} [ I - 2/3 (F x G + G x F) + 2/9 I1 G x G + I1/3 (G_iL G_kJ) ].
   template <class T>
   void add_tangent(const Tensor2<T>& F, const Tensor2<T>& cof, const T& J, Tensor4<T>& A) const {
-    const T scale = mu_ * power_of(J, -2.0 / 3.0);
+    const T scale = mu_ * isochoric_scale(J);
     const T I1 = double_contraction(F, F);
     Tensor2<T> G;
     for (std::size_t i = 0; i < 9; ++i) G[i] = cof[i] / J;

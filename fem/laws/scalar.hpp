@@ -11,15 +11,24 @@
 
 namespace palpate::fem {
 
+/// J^{-2/3}, by which the isochoric C is a multiple of C.
 template <class T>
-T power_of(const T& x, double exponent) {
+T isochoric_scale(const T& J) {
   using std::pow;
-  return pow(x, exponent);
+  return pow(J, -2.0 / 3.0);
 }
-/// By exp and log, which are vector code as pow is not; exact to round-off for x near 1, as a
-/// volume ratio is.
-inline Lanes power_of(const Lanes& x, double exponent) {
-  return (exponent * x.log()).exp();
+/// Volume ratios are near 1: a polynomial is within 4e-4 of J^{-1/3}, and with e = 1 - J y^3 the
+/// series y (1 + e/3 + 2 e^2/9 + ...) within 1e-15, in a fraction of the time of a logarithm.
+inline Lanes isochoric_scale(const Lanes& J) {
+  if (!(J >= 0.5 && J <= 2).all()) return ((-2.0 / 3.0) * J.log()).exp();
+  const Lanes t = J - 1.25;
+  const Lanes y =
+      0.9285975441 +
+      t * (-0.2484808853 +
+           t * (0.1236762303 + t * (-0.07088425975 + t * (0.08948418231 - 0.07066833362 * t))));
+  const Lanes e = 1 - J * y * y * y;
+  const Lanes root = y + y * e * (1.0 / 3 + e * (2.0 / 9 + e * (14.0 / 81 + (35.0 / 243) * e)));
+  return root * root;
 }
 
 template <class T>

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 namespace palpate::fem {
 namespace {
@@ -30,9 +31,31 @@ TEST(ScalarFunctions, AreThoseOfTheCLibraryInEveryLane) {
   // Eigen's eight square roots at once come from an estimate and Newton's method: the last bit.
   expect_same([](const Lanes& x) { return square_root(x); }, [](double x) { return std::sqrt(x); },
               2.3e-16);
-  for (const double exponent : {-2.0 / 3, -4.0 / 3, 1.0 / 3})
-    expect_same([&](const Lanes& x) { return power_of(x, exponent); },
-                [&](double x) { return std::pow(x, exponent); }, 4e-15);
+}
+
+double isochoric_scale_of(double J) {
+  return std::pow(J, -2.0 / 3.0);
+}
+
+TEST(ScalarFunctions, TheIsochoricScaleIsThePowerOfAnyVolumeRatio) {
+  const auto in_lanes = [](const Lanes& J) { return isochoric_scale(J); };
+  expect_same(in_lanes, isochoric_scale_of, 4e-15);
+  for (int i = 0; i <= 3000; ++i) {  // near 1, where they are found without a logarithm
+    const double J = 0.5 + 1.5 * i / 3000;
+    EXPECT_NEAR(isochoric_scale(Lanes(Lanes::Constant(J)))[kLanes - 1], isochoric_scale_of(J),
+                1e-15 * isochoric_scale_of(J))
+        << J;
+  }
+}
+
+TEST(ScalarFunctions, TheIsochoricScaleOfOneLaneLeavesTheOthersAlone) {
+  Lanes J = Lanes::Constant(1.1);
+  J[2] = 1e-6;
+  J[5] = std::numeric_limits<double>::quiet_NaN();
+  const Lanes scale = isochoric_scale(J);
+  EXPECT_NEAR(scale[0], isochoric_scale_of(1.1), 1e-15);
+  EXPECT_NEAR(scale[2], 1e4, 1e-10);
+  EXPECT_TRUE(std::isnan(scale[5]));
 }
 
 TEST(ScalarFunctions, ExceedsIsStrict) {
