@@ -43,4 +43,15 @@ constexpr std::array<std::array<double, 4>, kTetNodes> shape_derivatives(std::si
 inline constexpr std::array<std::array<std::array<double, 4>, kTetNodes>, kTetPoints> kTetShape{
     shape_derivatives(0), shape_derivatives(1), shape_derivatives(2), shape_derivatives(3)};
 
+/// dN_a/dL_c is linear in L. With every L = kTetFar it is 4 kTetFar - 1 for the corner c and
+/// 4 kTetFar for the nodes between c and other corners; at Gauss point q it is kTetStep more for
+/// the node kTetBetween[q][c], the corner c where q = c.
+inline constexpr double kTetStep = 4 * (kTetNear - kTetFar);
+inline constexpr std::array<std::array<std::size_t, 4>, kTetPoints> kTetBetween = [] {
+  std::array<std::array<std::size_t, 4>, kTetPoints> between{};
+  for (std::size_t q = 0; q < 4; ++q)
+    for (std::size_t c = 0; c < 4; ++c) between[q][c] = q == c ? c : middle_node(q, c);
+  return between;
+}();
+
 }  // namespace palpate::fem

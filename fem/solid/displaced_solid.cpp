@@ -15,24 +15,22 @@ namespace palpate::fem {
 
 ElementVector<Lanes> SolidModel::gather(const Block& block, const Displacement& u) const {
   ElementVector<Lanes> local;
-  for (int lane = 0; lane < kLanes; ++lane) {
-    const auto& node = mesh().tetrahedra[to_index(block.element[to_index(lane)])];
-    for (std::size_t a = 0; a < kTetNodes; ++a)
-      for (int i = 0; i < 3; ++i) local[a][to_index(i)][lane] = u(i, node[a]);
-  }
+  for (std::size_t a = 0; a < kTetNodes; ++a)
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const int node = block.node[a][to_index(lane)];
+      for (int i = 0; i < 3; ++i) local[a][to_index(i)][lane] = u(i, node);
+    }
   return local;
 }
 
 void SolidModel::scatter(const Block& block, const ElementVector<Lanes>& forces,
                          Eigen::VectorXd& f) const {
-  for (int lane = 0; lane < block.count; ++lane) {
-    const auto& node = mesh().tetrahedra[to_index(block.element[to_index(lane)])];
-    for (std::size_t a = 0; a < kTetNodes; ++a) {
-      const int first = equation(node[a]);
+  for (std::size_t a = 0; a < kTetNodes; ++a)
+    for (int lane = 0; lane < block.count; ++lane) {
+      const int first = block.equation[a][to_index(lane)];
       if (first < 0) continue;
       for (int i = 0; i < 3; ++i) f[first + i] += forces[a][to_index(i)][lane];
     }
-  }
 }
 
 ElementKinematics<Lanes> SolidModel::kinematics_of(const Block& block,

@@ -44,25 +44,48 @@ struct ElementKinematics {
   T mean_J;
 };
 
+/// The gradients of the volume coordinates times a factor.
+template <class T, class Factor>
+std::array<std::array<T, 3>, 4> scaled_gradient(const Factor& factor,
+                                                const ElementGeometry<T>& geometry) {
+  std::array<std::array<T, 3>, 4> scaled;
+  for (std::size_t c = 0; c < 4; ++c)
+    for (std::size_t j = 0; j < 3; ++j) scaled[c][j] = factor * geometry.gradient[c][j];
+  return scaled;
+}
+
+/// The part of F that all Gauss points have in common: see kTetStep.
+template <class T>
+Tensor2<T> common_deformation(const ElementGeometry<T>& geometry, const ElementVector<T>& u) {
+  Tensor2<T> F;
+  for (std::size_t i = 0; i < 3; ++i) {
+    std::array<T, 4> D;  // du_i/dL_c
+    for (std::size_t c = 0; c < 4; ++c)
+      D[c] = (4 * kTetFar - 1) * u[c][i] +
+             4 * kTetFar *
+                 (u[kTetBetween[c][(c + 1) % 4]][i] + u[kTetBetween[c][(c + 2) % 4]][i] +
+                  u[kTetBetween[c][(c + 3) % 4]][i]);
+    for (std::size_t j = 0; j < 3; ++j) {
+      F[3 * i + j] = D[0] * geometry.gradient[0][j] + D[1] * geometry.gradient[1][j] +
+                     D[2] * geometry.gradient[2][j] + D[3] * geometry.gradient[3][j];
+      if (i == j) F[3 * i + j] += 1.0;
+    }
+  }
+  return F;
+}
+
 template <class T>
 ElementKinematics<T> kinematics(const ElementGeometry<T>& geometry, const ElementVector<T>& u) {
   ElementKinematics<T> k;
+  const Tensor2<T> common = common_deformation(geometry, u);
+  const auto step = scaled_gradient<T>(kTetStep, geometry);
   for (std::size_t q = 0; q < kTetPoints; ++q) {
     Tensor2<T>& F = k.F[q];
-    for (std::size_t i = 0; i < 3; ++i) {
-      std::array<T, 4> D;  // du_i/dL_c
-      for (std::size_t c = 0; c < 4; ++c) {
-        D[c] = kTetShape[q][c][c] * u[c][i];
-        for (std::size_t e = 0; e < 6; ++e)
-          if (kTetEdges[e][0] == c || kTetEdges[e][1] == c)
-            D[c] += kTetShape[q][4 + e][c] * u[4 + e][i];
-      }
-      for (std::size_t j = 0; j < 3; ++j) {
-        F[3 * i + j] = D[0] * geometry.gradient[0][j] + D[1] * geometry.gradient[1][j] +
-                       D[2] * geometry.gradient[2][j] + D[3] * geometry.gradient[3][j];
-        if (i == j) F[3 * i + j] += 1.0;
-      }
-    }
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t j = 0; j < 3; ++j)
+        F[3 * i + j] = common[3 * i + j] + u[kTetBetween[q][0]][i] * step[0][j] +
+                       u[kTetBetween[q][1]][i] * step[1][j] + u[kTetBetween[q][2]][i] * step[2][j] +
+                       u[kTetBetween[q][3]][i] * step[3][j];
     k.cof[q] = cofactor(F);
     k.J[q] = determinant(F, k.cof[q]);
   }
@@ -145,25 +168,28 @@ PointPressures<T> mean_pressure(const std::array<T, 4>& corner) {
 template <class T, class Stress>
 ElementVector<T> nodal_forces(const ElementGeometry<T>& geometry, Stress&& stress) {
   ElementVector<T> f;
-  const T weight = 0.25 * geometry.volume;
+  const auto gradient = scaled_gradient<T>(T(0.25 * geometry.volume), geometry);
+  Tensor2<T> sum;
   for (std::size_t q = 0; q < kTetPoints; ++q) {
     const Tensor2<T> P = stress(q);
-    for (std::size_t i = 0; i < 3; ++i) {
-      std::array<T, 4> t;
-      for (std::size_t c = 0; c < 4; ++c)
-        t[c] =
-            weight * (P[3 * i] * geometry.gradient[c][0] + P[3 * i + 1] * geometry.gradient[c][1] +
-                      P[3 * i + 2] * geometry.gradient[c][2]);
-      for (std::size_t a = 0; a < kTetNodes; ++a) {
-        T value = a < 4 ? T(kTetShape[q][a][a] * t[a])
-                        : T(kTetShape[q][a][kTetEdges[a - 4][0]] * t[kTetEdges[a - 4][0]] +
-                            kTetShape[q][a][kTetEdges[a - 4][1]] * t[kTetEdges[a - 4][1]]);
-        if (q == 0)
-          f[a][i] = value;
-        else
-          f[a][i] += value;
+    for (std::size_t i = 0; i < 9; ++i) sum[i] = q == 0 ? P[i] : T(sum[i] + P[i]);
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t c = 0; c < 4; ++c) {
+        const T t = P[3 * i] * gradient[c][0] + P[3 * i + 1] * gradient[c][1] +
+                    P[3 * i + 2] * gradient[c][2];
+        T& force = f[kTetBetween[q][c]][i];
+        force = c < q ? T(force + kTetStep * t) : T(kTetStep * t);
       }
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    std::array<T, 4> t;  // of all points, with L = kTetFar
+    for (std::size_t c = 0; c < 4; ++c) {
+      t[c] = sum[3 * i] * gradient[c][0] + sum[3 * i + 1] * gradient[c][1] +
+             sum[3 * i + 2] * gradient[c][2];
+      f[c][i] += (4 * kTetFar - 1) * t[c];
     }
+    for (std::size_t e = 0; e < kTetEdges.size(); ++e)
+      f[4 + e][i] += (4 * kTetFar) * (t[kTetEdges[e][0]] + t[kTetEdges[e][1]]);
   }
   return f;
 }

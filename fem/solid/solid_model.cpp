@@ -157,6 +157,10 @@ void SolidModel::make_blocks(const std::vector<int>& elements) {
     std::vector<int> members;
     for (const int e : elements)
       if (mesh().region[to_index(e)] == region) members.push_back(e);
+    // Along the numbers of mid-edge nodes: those of near elements are near each other.
+    std::stable_sort(members.begin(), members.end(), [this](int a, int b) {
+      return mesh().tetrahedra[to_index(a)][4] < mesh().tetrahedra[to_index(b)][4];
+    });
     for (std::size_t first = 0; first < members.size(); first += kLanes) {
       blocks_.push_back(make_block(members, first, region));
     }
@@ -172,6 +176,11 @@ SolidModel::Block SolidModel::make_block(const std::vector<int>& elements, std::
     const int element = elements[std::min(first + to_index(lane), elements.size() - 1)];
     const ElementGeometry<double> one = geometry_of(mesh(), element);
     block.element[to_index(lane)] = element;
+    for (std::size_t a = 0; a < kTetNodes; ++a) {
+      const int node = mesh().tetrahedra[to_index(element)][a];
+      block.node[a][to_index(lane)] = node;
+      block.equation[a][to_index(lane)] = equation(node);
+    }
     if (has_nodal_pressure(solid_->dilatation))
       block.pressure_point[to_index(lane)] = nodal_.points_of(mesh(), element);
     block.geometry.volume[lane] = one.volume;

@@ -147,7 +147,9 @@ class SolidModel {
     int count = 0;  ///< SIMD lanes in use; the others repeat the last element
     int region = 0;
     std::array<int, kLanes> element{};
-    std::array<std::array<int, 4>, kLanes> pressure_point{};  ///< with nodal pressures; else -1
+    std::array<std::array<int, kLanes>, kTetNodes> node{};
+    std::array<std::array<int, kLanes>, kTetNodes> equation{};  ///< of the nodes; -1: fixed
+    std::array<std::array<int, 4>, kLanes> pressure_point{};    ///< with nodal pressures; else -1
     ElementGeometry<Lanes> geometry;
   };
   /// Nodal pressures: derivatives of U at Jbar_n, and its energy.
