@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "app/report/straight_press.hpp"
 #include "fitting/measurement/nearest_rank.hpp"
 #include "format/edge.hpp"
 #include "runtime/response_curve.hpp"
@@ -22,9 +23,9 @@ double along(const CurveSample& sample, const CurvePath& path, const Vec3& inwar
 
 }  // namespace
 
-double secant_stiffness(const NodeResponse& response, double d) {
+double secant_stiffness(const NodeResponse& response, ResponseKind kind, double d) {
   if (response.status == ResponseStatus::Hole || response.normal.knot.size() < 2) return kNaN;
-  return runtime::CompiledCurve(response.normal).force(d) / d;
+  return runtime::CompiledCurve(straight_press(response, kind)).force(d) / d;
 }
 
 double relative_error(double error, double peak) {
@@ -48,7 +49,7 @@ ChosenVertices choose_vertices(const Library& library, const std::vector<PeakFor
   double worst = -1;
   for (std::size_t v = 0; v < library.responses.size(); ++v) {
     const NodeResponse& response = library.responses[v];
-    const double stiffness = secant_stiffness(response, d);
+    const double stiffness = secant_stiffness(response, library.kind, d);
     if (!std::isfinite(stiffness)) continue;
     order.emplace_back(stiffness, static_cast<std::int32_t>(v));
     if (response.status != ResponseStatus::Fitted) continue;

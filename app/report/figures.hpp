@@ -11,8 +11,8 @@
 
 namespace palpate::report {
 
-/// f^z(d)/d of the rendered response, N/m; NaN where the vertex has no response.
-double secant_stiffness(const NodeResponse& response, double d);
+/// f^z(d)/d of a straight press as it is rendered, N/m; NaN where the vertex has no response.
+double secant_stiffness(const NodeResponse& response, ResponseKind kind, double d);
 
 /// Largest fit error over the largest sampled force of the same coordinate; NaN without samples.
 double relative_error(double error, double peak);

@@ -10,6 +10,7 @@
 #include "app/report/figures.hpp"
 #include "app/report/inclusions.hpp"
 #include "app/report/repair_file.hpp"
+#include "app/report/straight_press.hpp"
 #include "app/report/surface_map.hpp"
 #include "app/report/touch.hpp"
 #include "fitting/response/accuracy.hpp"
@@ -280,8 +281,9 @@ json response_columns(const Library& library, bool normal) {
   std::vector<std::uint32_t> offset{0};
   std::vector<float> knot, slope;
   for (const NodeResponse& response : library.responses) {
-    const ResponseCurve& curve = normal ? response.normal : response.lateral;
     if (response.status != ResponseStatus::Hole) {
+      const ResponseCurve curve =
+          normal ? straight_press(response, library.kind) : response.lateral;
       knot.insert(knot.end(), curve.knot.begin(), curve.knot.end());
       slope.insert(slope.end(), curve.slope.begin(), curve.slope.end());
     }

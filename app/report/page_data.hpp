@@ -25,7 +25,7 @@ std::vector<std::int32_t> library_triangles(const std::vector<Triangle>& triangl
                                             const Library& library);
 /// The boundary of a body on its response surface, for the picture.
 nlohmann::json surface_data(const Body& body, const Library& library, const SurfaceMap& map);
-/// Curves of all vertices in sequence, delimited by offsets: of the normal or of the lateral
+/// Curves of all vertices in sequence, delimited by offsets: of straight presses or of the lateral
 /// responses.
 nlohmann::json response_columns(const Library& library, bool normal);
 /// Surfaces of the regions inside.

@@ -169,11 +169,12 @@ TEST(SecantStiffness, OfAPiecewiseLinearSlopeInClosedForm) {
   NodeResponse response;
   response.status = ResponseStatus::Fitted;
   response.normal = {{0.0F, 0.25F, 0.5F}, {0.0F, 8.0F, 16.0F}};  // f = 16 d^2, then slope 16
-  EXPECT_DOUBLE_EQ(report::secant_stiffness(response, 0.125), 2.0);
-  EXPECT_DOUBLE_EQ(report::secant_stiffness(response, 0.5), 8.0);
-  EXPECT_DOUBLE_EQ(report::secant_stiffness(response, 1.0), 12.0);  // 4 + 16 * 0.5 at d = 1
+  EXPECT_DOUBLE_EQ(report::secant_stiffness(response, ResponseKind::Decoupled, 0.125), 2.0);
+  EXPECT_DOUBLE_EQ(report::secant_stiffness(response, ResponseKind::Decoupled, 0.5), 8.0);
+  EXPECT_DOUBLE_EQ(report::secant_stiffness(response, ResponseKind::Decoupled, 1.0),
+                   12.0);  // 4 + 16 * 0.5 at d = 1
   response.status = ResponseStatus::Hole;
-  EXPECT_TRUE(std::isnan(report::secant_stiffness(response, 0.5)));
+  EXPECT_TRUE(std::isnan(report::secant_stiffness(response, ResponseKind::Decoupled, 0.5)));
 }
 
 TEST_F(Report, CountsTheSitesAndTheDeepestPress) {
