@@ -11,7 +11,6 @@
 
 #include "format/error.hpp"
 #include "format/origin_distance.hpp"
-#include "format/space_filling_order.hpp"
 
 namespace palpate::runtime {
 namespace {
@@ -22,6 +21,30 @@ constexpr double kLeastDirection =
 
 std::string triangle_name(std::size_t m) {
   return "library triangle " + std::to_string(m);
+}
+
+/// Positions of the points along a space-filling curve, on which near points are mostly near each
+/// other (Z order; G. M. Morton 1966).
+std::vector<std::size_t> along_a_curve(const std::vector<Vec3>& points, const Vec3& low,
+                                       const Vec3& high) {
+  constexpr std::size_t kBits = 20;  // an axis
+  std::vector<std::pair<std::uint64_t, std::size_t>> place;
+  place.reserve(points.size());
+  for (std::size_t v = 0; v < points.size(); ++v) {
+    std::uint64_t code = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double extent = std::max(high[i] - low[i], 1e-12);
+      const auto cell =
+          static_cast<std::uint64_t>((points[v][i] - low[i]) / extent * ((1U << kBits) - 1));
+      for (std::size_t bit = 0; bit < kBits; ++bit) code |= ((cell >> bit) & 1U) << (3 * bit + i);
+    }
+    place.emplace_back(code, v);
+  }
+  std::sort(place.begin(), place.end());
+  std::vector<std::size_t> order;
+  order.reserve(place.size());
+  for (const auto& [code, v] : place) order.push_back(v);
+  return order;
 }
 
 /// Pieces are as many as knots; a hole has none.
@@ -131,7 +154,7 @@ std::vector<std::int32_t> Surface::build_nodes(const Library& library) {
       high_[i] = std::max(high_[i], p[i]);
     }
   }
-  const std::vector<std::size_t> order = space_filling_order(library.positions);
+  const std::vector<std::size_t> order = along_a_curve(library.positions, low_, high_);
   std::vector<std::int32_t> record(order.size());
   std::size_t lines = 0;
   for (const std::size_t v : order) {

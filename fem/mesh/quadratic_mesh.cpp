@@ -8,7 +8,6 @@
 
 #include "fem/mesh/to_eigen.hpp"
 #include "format/edge.hpp"
-#include "format/space_filling_order.hpp"
 #include "format/to_index.hpp"
 
 namespace palpate::fem {
@@ -84,15 +83,6 @@ std::vector<std::int32_t> regions_behind(const Body& body) {
   return region;
 }
 
-std::vector<Vec3> centroids(const Body& body) {
-  std::vector<Vec3> middle;
-  middle.reserve(body.tetrahedra.size());
-  for (const auto& t : body.tetrahedra)
-    middle.push_back(0.25 * (body.nodes[to_index(t[0])] + body.nodes[to_index(t[1])] +
-                             body.nodes[to_index(t[2])] + body.nodes[to_index(t[3])]));
-  return middle;
-}
-
 }  // namespace
 
 QuadraticMesh make_quadratic_mesh(const Body& body, bool linear) {
@@ -100,14 +90,13 @@ QuadraticMesh make_quadratic_mesh(const Body& body, bool linear) {
   mesh.linear = linear;
   EdgeNodes edges(static_cast<std::int32_t>(body.nodes.size()));
   mesh.region = body.tetrahedron_region;
-  mesh.tetrahedra.resize(body.tetrahedra.size());
-  // Elements that are near each other thus have nodes that are near each other in memory.
-  for (const std::size_t t : space_filling_order(centroids(body))) {
-    const auto& corners = body.tetrahedra[t];
-    Tetrahedron10& nodes = mesh.tetrahedra[t];
+  mesh.tetrahedra.reserve(body.tetrahedra.size());
+  for (const auto& corners : body.tetrahedra) {
+    Tetrahedron10 nodes{};
     std::copy(corners.begin(), corners.end(), nodes.begin());
     for (std::size_t e = 0; e < kTetEdges.size(); ++e)
       nodes[4 + e] = edges.of(corners[kTetEdges[e][0]], corners[kTetEdges[e][1]]);
+    mesh.tetrahedra.push_back(nodes);
   }
   for (const auto& t : body.boundary)
     mesh.facets.push_back(

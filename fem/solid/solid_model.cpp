@@ -157,10 +157,6 @@ void SolidModel::make_blocks(const std::vector<int>& elements) {
     std::vector<int> members;
     for (const int e : elements)
       if (mesh().region[to_index(e)] == region) members.push_back(e);
-    // Along the numbers of mid-edge nodes: those of near elements are near each other.
-    std::stable_sort(members.begin(), members.end(), [this](int a, int b) {
-      return mesh().tetrahedra[to_index(a)][4] < mesh().tetrahedra[to_index(b)][4];
-    });
     for (std::size_t first = 0; first < members.size(); first += kLanes) {
       blocks_.push_back(make_block(members, first, region));
     }
