@@ -21,6 +21,9 @@ namespace {
 
 /// What is nearer than this to a no-slip tool at first touch is bonded to it, over its radius.
 constexpr double kTouching = 1e-6;
+/// Error of the force before what a no-slip tool met is bonded to it, over the wanted one: where it
+/// was met is known well enough, and another equilibrium follows.
+constexpr double kBeforeBonding = 10;
 /// Radius around the site within which self-contact is detected, over the extent of the tool.
 constexpr double kWatched = 4;
 /// Increments of the path across the azimuth: with two, what is proportional to the force of a drag
@@ -117,14 +120,30 @@ struct SiteSolver::Site {
 bool SiteSolver::press_to(Site& site, PathDriver& driver, const Increment& increment,
                           Predictor& states, Displacement& u, CurveSample& sample,
                           std::string& reason) {
+  if (context_.indentation.friction != ToolFriction::NoSlip)
+    return driver.advance(increment.from, increment.to, states, u, sample, reason);
   const IncrementStart start{u, site.tool_at(increment.from).tip};
-  if (!driver.advance(increment.from, increment.to, states, u, sample, reason)) return false;
-  if (context_.indentation.friction != ToolFriction::NoSlip) return true;
-  const ToolContact before = site.contact;
-  if (bond_observer_) bond_observer_(before, u, start);
-  if (!site.contact.bond_since(start, u)) return true;
-  if (driver.settle(increment.to, states, u, sample, reason)) return true;
-  site.contact = before;
+  const double tolerance = context_.indentation.force_tolerance;
+  // An observer differentiates the equilibrium before bonding too.
+  const bool rough = !bond_observer_;
+  if (rough) site.equilibrium.allow_error(kBeforeBonding * tolerance);
+  const bool arrived = driver.advance(increment.from, increment.to, states, u, sample, reason);
+  site.equilibrium.allow_error(tolerance);
+  if (arrived) {
+    const ToolContact before = site.contact;
+    if (bond_observer_) bond_observer_(before, u, start);
+    const bool bonded = site.contact.bond_since(start, u);
+    if (!bonded && !rough) return true;
+    if (driver.settle(increment.to, states, u, sample, reason)) return true;
+    site.contact = before;
+  }
+  // The path ends here, without what was met since the last sample.
+  std::string ignored;
+  if (rough && driver.reached() > increment.from &&
+      !driver.settle(driver.reached(), states, u, sample, ignored)) {
+    u = start.u;
+    driver.turn_back(increment.from);
+  }
   return false;
 }
 

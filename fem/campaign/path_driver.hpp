@@ -43,10 +43,17 @@ class PathDriver {
   bool advance(double from, double to, Predictor& states, Displacement& u, CurveSample& sample,
                std::string& reason);
 
-  /// From an equilibrium at `s`, which bonding has changed, to the one there is now: u, `sample`
-  /// and the last of `states`. False: `reason` says why, and they are as before.
+  /// From an equilibrium at `s`, which bonding has changed or which is less accurate, to the one
+  /// there is now: u, `sample` and the last of `states`. False: `reason` says why, and they are as
+  /// before.
   bool settle(double s, Predictor& states, Displacement& u, CurveSample& sample,
               std::string& reason);
+
+  /// After an advance() whose end is no equilibrium of the wanted accuracy: `s` is where it ended.
+  void turn_back(double s) {
+    reached_ = s;
+    problem_.contact.move_to(problem_.tool_at(s));
+  }
 
   /// m, end of the last advance().
   double reached() const { return reached_; }
