@@ -103,7 +103,7 @@ PathDriver::Outcome PathDriver::equilibrate(double s, int halvings, Displacement
   sample.iterations += result.iterations;
   reason = result.reason;
   if (!result.converged) return Outcome::NotFound;
-  record(s, u, sample);
+  record(s, u, result.solid, sample);
   const std::string fault = fault_of(sample, u);
   if (fault.empty()) return Outcome::Found;
   reason = fault;
@@ -125,10 +125,11 @@ std::string PathDriver::fault_of(const CurveSample& sample, const Displacement& 
   return {};
 }
 
-void PathDriver::record(double s, const Displacement& u, CurveSample& sample) const {
+void PathDriver::record(double s, const Displacement& u,
+                        const std::optional<SolidModel::State>& known, CurveSample& sample) const {
   const ToolContact& contact = problem_.contact;
   const PartTimer timer(Part::BodyPasses);
-  const SolidModel::State state = problem_.model.energy(u);
+  const SolidModel::State state = known ? *known : problem_.model.energy(u);
   const PartTimer inner(Part::Contact);
   sample.displacement = s;
   sample.force = to_vec3(contact.tool_force(u));

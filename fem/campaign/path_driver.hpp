@@ -71,7 +71,9 @@ class PathDriver {
                       std::string& reason);
   /// Why the equilibrium of `sample` is no indentation; empty when it is one.
   std::string fault_of(const CurveSample& sample, const Displacement& u) const;
-  void record(double s, const Displacement& u, CurveSample& sample) const;
+  /// `known`: the state of the body at u.
+  void record(double s, const Displacement& u, const std::optional<SolidModel::State>& known,
+              CurveSample& sample) const;
   void add_work(double from, const Displacement& before, const Displacement& after);
 
   PathProblem problem_;

@@ -64,6 +64,7 @@ Equilibrium evaluate(const SolidModel& model, const ToolContact& contact, const 
   const PartTimer timer(Part::Contact);
   now.energy = state.energy + contact.energy(u);
   now.min_J = state.min_J;
+  now.solid = state;
   contact.add_forces(model, u, now.residual);
   return now;
 }

@@ -25,12 +25,15 @@ struct NewtonResult {
   bool converged = false;
   int iterations = 0;
   std::string reason;  ///< of a failure, one clause; else empty
+  /// Of the body at the solution, where the last evaluation knew it.
+  std::optional<SolidModel::State> solid;
 };
 
 /// Energy of body and contact at a displacement, with its gradient on the unknowns of the model.
 struct Equilibrium {
   double energy = 0;
-  double min_J = 1;  ///< the other members are void when it is not positive
+  double min_J = 1;         ///< the other members are void when it is not positive
+  SolidModel::State solid;  ///< with multipliers that of the augmented laws
   Eigen::VectorXd residual;
 };
 /// The residual that is compared with `options.tolerance`, N: its norm; for a body on springs,

@@ -236,6 +236,7 @@ NewtonResult SharedFactorSolver::descend(const ToolContact& contact, const Newto
     if (verdict == Verdict::Converged) {
       result.converged = true;
       result.reason.clear();
+      if (!multipliers_.any()) result.solid = now.solid;
       return result;
     }
     if (!turned_solve_ && result.iterations >= (is_bent_ ? bent_.then_after : bent_.after_steps))

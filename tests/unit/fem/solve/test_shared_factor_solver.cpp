@@ -42,6 +42,14 @@ void expect_same_state(const PressedBody& p, const Displacement& u, const Displa
   EXPECT_LT((u - expected).norm(), 1e-4 * expected.norm());
 }
 
+void expect_state_of(const SolidModel& model, const Displacement& u, const NewtonResult& result) {
+  ASSERT_TRUE(result.solid);
+  const SolidModel::State state = model.energy(u);
+  EXPECT_DOUBLE_EQ(result.solid->energy, state.energy);
+  EXPECT_DOUBLE_EQ(result.solid->volume, state.volume);
+  EXPECT_DOUBLE_EQ(result.solid->min_J, state.min_J);
+}
+
 /// Presses to one depth after the other, each as Newton's method does.
 void expect_newtons_equilibria(const std::vector<double>& depths) {
   PressedBody p(2 * kToolRadius);
@@ -54,6 +62,7 @@ void expect_newtons_equilibria(const std::vector<double>& depths) {
     EXPECT_LE(result.iterations, 15) << depth;
     expect_equilibrium(p, u);
     expect_same_state(p, u, by_newton(p, u));
+    expect_state_of(p.whole, u, result);
   }
 }
 
@@ -79,6 +88,7 @@ TEST(SharedFactorSolver, FindsNearlyIncompressibleEquilibriaInFewIterations) {
       const NewtonResult result = solver.solve(p.contact, {.tolerance = kTolerance}, u);
       ASSERT_TRUE(result.converged) << result.reason;
       EXPECT_LE(result.iterations, 25) << depth;
+      EXPECT_FALSE(result.solid);  // its energy is that of the augmented law
       expect_same_state(p, u, by_newton(p, u));
     }
   }
