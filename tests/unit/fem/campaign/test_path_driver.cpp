@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "fem/campaign/indentation.hpp"
 #include "tests/support/block_body.hpp"
@@ -89,6 +90,33 @@ TEST(PathDriver, ReachesTheOnsetOfAFaultInCoarseIncrementsToo) {
   EXPECT_EQ(coarse.paths[1].kind, PathKind::Lateral);
   EXPECT_EQ(coarse.paths[1].lateral_depth, end.displacement);
   EXPECT_EQ(norm(coarse.paths[1].samples.front().force), norm(end.force));
+}
+
+/// A no-slip press finds where it met the surface with less accuracy, and then what it records: to
+/// the last sample, also where the path ends within an increment.
+TEST(PathDriver, EndsANoSlipPressWithASampleOfTheWantedAccuracy) {
+  const Body body = test::make_block(test::even(-0.016, 0.016, 4), test::even(-0.016, 0.016, 4),
+                                     test::even(-0.012, 0, 3));
+  const auto press = [&](double tolerance) {
+    CampaignSettings settings =
+        pressing({"yeoh", {{"C10", 1.5e3}, {"C20", -2.5e3}, {"C30", 1.6e3}, {"poisson", 0.45}}});
+    settings.indentation.friction = ToolFriction::NoSlip;
+    settings.indentation.depth = 0.005;
+    settings.indentation.increments = 4;
+    settings.indentation.lateral_depths.clear();
+    settings.indentation.force_tolerance = tolerance;
+    return fem::press(body, settings, Engine::SharedFactor);
+  };
+  const SiteCurves site = press(1e-3), exact = press(1e-7);
+  EXPECT_EQ(site.status, SiteStatus::Partial);
+  const auto &samples = site.paths.front().samples, &there = exact.paths.front().samples;
+  ASSERT_EQ(samples.size(), there.size());
+  ASSERT_GT(samples.size(), 2u);
+  EXPECT_GT(std::fmod(samples.back().displacement, 0.00125), 1e-6);
+  for (std::size_t i = 1; i < samples.size(); ++i) {
+    ASSERT_EQ(samples[i].displacement, there[i].displacement);
+    EXPECT_NEAR(norm(samples[i].force), norm(there[i].force), 1e-3 * norm(there[i].force)) << i;
+  }
 }
 
 /// The tool reaches over a fixed rim that the penalty cannot push away.
