@@ -25,7 +25,7 @@ struct NewtonResult {
   bool converged = false;
   int iterations = 0;
   std::string reason;  ///< of a failure, one clause; else empty
-  /// Of the body at the solution, where the last evaluation knew it.
+  /// State of the body at the solution, where the last evaluation knew it.
   std::optional<SolidModel::State> solid;
 };
 
