@@ -22,7 +22,8 @@ namespace {
 /// What is nearer than this to a no-slip tool at first touch is bonded to it, over its radius.
 constexpr double kTouching = 1e-6;
 /// Error of the force before what a no-slip tool met is bonded to it, over the wanted one: where it
-/// was met is known well enough, and another equilibrium follows.
+/// was met is known well enough, and another equilibrium follows. Where either is not found, the
+/// increment begins again with the wanted error.
 constexpr double kBeforeBonding = 10;
 /// Radius around the site within which self-contact is detected, over the extent of the tool.
 constexpr double kWatched = 4;
@@ -123,27 +124,35 @@ bool SiteSolver::press_to(Site& site, PathDriver& driver, const Increment& incre
   if (context_.indentation.friction != ToolFriction::NoSlip)
     return driver.advance(increment.from, increment.to, states, u, sample, reason);
   const IncrementStart start{u, site.tool_at(increment.from).tip};
-  const double tolerance = context_.indentation.force_tolerance;
   // An observer differentiates the equilibrium before bonding too.
-  const bool rough = !bond_observer_;
-  if (rough) site.equilibrium.allow_error(kBeforeBonding * tolerance);
-  const bool arrived = driver.advance(increment.from, increment.to, states, u, sample, reason);
-  site.equilibrium.allow_error(tolerance);
-  if (arrived) {
-    const ToolContact before = site.contact;
-    if (bond_observer_) bond_observer_(before, u, start);
-    const bool bonded = site.contact.bond_since(start, u);
-    if (!bonded && !rough) return true;
-    if (driver.settle(increment.to, states, u, sample, reason)) return true;
-    site.contact = before;
-  }
-  // The path ends here, without what was met since the last sample.
-  std::string ignored;
-  if (rough && driver.reached() > increment.from &&
-      !driver.settle(driver.reached(), states, u, sample, ignored)) {
+  if (!bond_observer_) {
+    const Predictor states_before = states;
+    const ToolContact contact_before = site.contact;
+    const double tolerance = context_.indentation.force_tolerance;
+    site.equilibrium.allow_error(kBeforeBonding * tolerance);
+    const bool arrived = driver.advance(increment.from, increment.to, states, u, sample, reason);
+    site.equilibrium.allow_error(tolerance);
+    if (arrived) {
+      site.contact.bond_since(start, u);
+      if (driver.settle(increment.to, states, u, sample, reason)) return true;
+    }
     u = start.u;
-    driver.turn_back(increment.from);
+    states = states_before;
+    site.contact = contact_before;
+    site.equilibrium.start_path(site.tool_at(increment.from), u);
   }
+  return press_accurately_to(site, driver, increment, start, states, u, sample, reason);
+}
+
+bool SiteSolver::press_accurately_to(Site& site, PathDriver& driver, const Increment& increment,
+                                     const IncrementStart& start, Predictor& states,
+                                     Displacement& u, CurveSample& sample, std::string& reason) {
+  if (!driver.advance(increment.from, increment.to, states, u, sample, reason)) return false;
+  const ToolContact before = site.contact;
+  if (bond_observer_) bond_observer_(before, u, start);
+  if (!site.contact.bond_since(start, u)) return true;
+  if (driver.settle(increment.to, states, u, sample, reason)) return true;
+  site.contact = before;
   return false;
 }
 

@@ -78,6 +78,10 @@ class SiteSolver {
   /// to a tool without slip.
   bool press_to(Site& site, PathDriver& driver, const Increment& increment, Predictor& states,
                 Displacement& u, CurveSample& sample, std::string& reason);
+  /// The same with the tolerance of the settings before bonding too.
+  bool press_accurately_to(Site& site, PathDriver& driver, const Increment& increment,
+                           const IncrementStart& start, Predictor& states, Displacement& u,
+                           CurveSample& sample, std::string& reason);
   void run_normal_path(Site& site, const std::vector<double>& stops, SiteCurves& curves);
   void run_lateral_path(Site& site, const LateralPlan& plan, SiteCurves& curves);
   void run_across(Site& site, const LateralPlan& plan, const SiteCurves& curves);

@@ -49,12 +49,6 @@ class PathDriver {
   bool settle(double s, Predictor& states, Displacement& u, CurveSample& sample,
               std::string& reason);
 
-  /// After an advance() whose end is no equilibrium of the wanted accuracy: `s` is where it ended.
-  void turn_back(double s) {
-    reached_ = s;
-    problem_.contact.move_to(problem_.tool_at(s));
-  }
-
   /// m, end of the last advance().
   double reached() const { return reached_; }
   /// J, of the tool in the last advance(); nothing where it could not be integrated.
