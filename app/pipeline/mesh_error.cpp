@@ -44,7 +44,7 @@ std::vector<std::pair<std::string, std::string>> estimate_mesh_error(
     const Workspace& space, const Body& body, const fem::CampaignSettings& settings, Curves& curves,
     fem::FactorCache* cache, const EventSink& emit) {
   if (settings.mesh_error_sites == 0) return {};
-  const std::string obstacle = fem::obstacle_to_refinement(body, settings);
+  const std::string obstacle = fem::obstacle_to_refinement(settings);
   if (!obstacle.empty()) {
     emit(LogLine{"precompute",
                  "the error of the mesh stays unknown: elements cannot be refined "
@@ -54,7 +54,7 @@ std::vector<std::pair<std::string, std::string>> estimate_mesh_error(
   }
   const auto all = candidates(space, body, curves);
   const auto chosen =
-      fem::sites_far_apart(body, all, fem::count_on_finer_mesh(body, settings, all.size()));
+      fem::sites_far_apart(body, all, fem::count_on_finer_mesh(settings, all.size()));
   fem::CampaignReport report;
   try {
     fem::press_on_finer_mesh(body, with_progress_to(emit, settings), chosen, curves, report, cache);

@@ -27,7 +27,7 @@ struct OutOfPatience {};
 /// How many sites take as long as those of the shard that are pressed on a finer mesh.
 double sites_worth_of_finer_mesh(const Workspace& space, const Body& body,
                                  const fem::CampaignSettings& settings) {
-  return kFinerOverOthers * fem::count_on_finer_mesh(body, settings, sites_of(body).size()) /
+  return kFinerOverOthers * fem::count_on_finer_mesh(settings, sites_of(body).size()) /
          space.shard.count;
 }
 

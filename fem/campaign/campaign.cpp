@@ -227,13 +227,13 @@ DeformedState deformed_state(const Body& body, const CampaignSettings& settings,
   CampaignSettings normal_only = settings;
   normal_only.indentation.lateral_depths.clear();
   const CampaignContext context(body, normal_only, Engine::SharedFactor);
-  Displacement u;
-  const SiteCurves curves = solve_site(context, vertex, &u);
+  Displacement u, rest;
+  const SiteCurves curves = solve_site(context, vertex, &u, &rest);
   DeformedState state;
   for (std::size_t i = 0; i < body.nodes.size(); ++i) {
     const auto column = static_cast<Eigen::Index>(i);
     Eigen::Vector3d moved = u.col(column);
-    if (context.unloaded) moved -= context.rest.col(column);
+    if (context.unloaded) moved -= rest.col(column);
     state.displacement.push_back(to_vec3(moved));
   }
   context.model.element_fields(u, state.strain_energy_density, state.pressure);

@@ -44,7 +44,7 @@ namespace {
 
 void check_refinement(const Body& body, const CampaignSettings& settings, Engine engine) {
   if (!settings.indentation.refines()) return;
-  std::string with = obstacle_to_refinement(body, settings);
+  std::string with = obstacle_to_refinement(settings);
   if (with.empty() && engine == Engine::Direct) with = "when every step factorizes the body";
   if (with.empty()) return;
   throw Error(ErrorKind::Configuration, body.name,
@@ -54,11 +54,8 @@ void check_refinement(const Body& body, const CampaignSettings& settings, Engine
 
 }  // namespace
 
-std::string obstacle_to_refinement(const Body& body, const CampaignSettings& settings) {
-  if (has_nodal_pressure(settings.dilatation)) return "with nodal pressures";
-  if (!body.foundation.empty()) return "of a body on springs";
-  if (settings.gravity.acts()) return "of a body under its weight";
-  return {};
+std::string obstacle_to_refinement(const CampaignSettings& settings) {
+  return has_nodal_pressure(settings.dilatation) ? "with nodal pressures" : "";
 }
 
 /// The model and its equilibrium before the touch.
@@ -71,7 +68,8 @@ struct CampaignContext::Preloaded {
 
 CampaignContext::Preloaded CampaignContext::preloaded(const Body& body,
                                                       const CampaignSettings& settings,
-                                                      FactorCache* cache) {
+                                                      Engine engine, FactorCache* cache) {
+  check_refinement(body, settings, engine);
   const std::vector<Law> laws = laws_of_regions(body, settings.materials);
   const Gravity gravity = gravity_on(body, settings);
   SolidModel model(body, laws, settings.dilatation, gravity);
@@ -88,7 +86,7 @@ CampaignContext::Preloaded CampaignContext::preloaded(const Body& body,
 
 CampaignContext::CampaignContext(const Body& b, const CampaignSettings& settings, Engine e,
                                  FactorCache* cache)
-    : CampaignContext(b, settings, e, cache, preloaded(b, settings, cache)) {}
+    : CampaignContext(b, settings, e, cache, preloaded(b, settings, e, cache)) {}
 
 CampaignContext::CampaignContext(const Body& b, const CampaignSettings& settings, Engine e,
                                  FactorCache* cache, Preloaded&& start)
@@ -104,7 +102,6 @@ CampaignContext::CampaignContext(const Body& b, const CampaignSettings& settings
       at_rest(model.energy(rest)),
       round_off(settings.gravity.acts() ? rounding_of_rest(model, rest) : 0) {
   use_one_thread_per_site();
-  check_refinement(b, settings, engine);
   contact_stiffness = fem::contact_stiffness(b, settings, model);
   if (engine == Engine::Direct) return;
   std::vector<double> K;

@@ -60,7 +60,7 @@ struct CampaignContext {
 
  private:
   struct Preloaded;
-  static Preloaded preloaded(const Body& body, const CampaignSettings& settings,
+  static Preloaded preloaded(const Body& body, const CampaignSettings& settings, Engine engine,
                              FactorCache* cache);
   CampaignContext(const Body& body, const CampaignSettings& settings, Engine engine,
                   FactorCache* cache, Preloaded&& start);
@@ -82,9 +82,9 @@ class OwnFactorPlace {
   std::counting_semaphore<>& places_;
 };
 
-/// Why elements cannot be refined under the tool: refined ones have energies of elements alone,
-/// without nodal pressures, springs or weight. Empty where they can.
-std::string obstacle_to_refinement(const Body& body, const CampaignSettings& settings);
+/// Why elements cannot be refined under the tool: refined ones have pressures of elements alone.
+/// Empty where they can.
+std::string obstacle_to_refinement(const CampaignSettings& settings);
 
 /// From the largest Young's modulus at rest of the regions at the boundary: stiffer regions inside
 /// must not stiffen the contact.

@@ -85,8 +85,8 @@ std::vector<std::int32_t> sites_far_apart(const Body& body, const std::vector<st
   return chosen;
 }
 
-int count_on_finer_mesh(const Body& body, const CampaignSettings& settings, std::size_t sites) {
-  if (settings.mesh_error_sites == 0 || !obstacle_to_refinement(body, settings).empty()) return 0;
+int count_on_finer_mesh(const CampaignSettings& settings, std::size_t sites) {
+  if (settings.mesh_error_sites == 0 || !obstacle_to_refinement(settings).empty()) return 0;
   return std::min({settings.mesh_error_sites, std::max(2, static_cast<int>(sites / 10)),
                    static_cast<int>(sites)});
 }

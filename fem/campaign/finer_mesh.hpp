@@ -22,7 +22,7 @@ std::vector<std::int32_t> sites_far_apart(const Body& body, const std::vector<st
 /// How many of `sites` sites are pressed on a finer mesh too, by
 /// CampaignSettings::mesh_error_sites: where there are few, every tenth, but two. 0 where elements
 /// cannot be refined.
-int count_on_finer_mesh(const Body& body, const CampaignSettings& settings, std::size_t sites);
+int count_on_finer_mesh(const CampaignSettings& settings, std::size_t sites);
 
 /// Presses those of the `chosen` sites that `curves` has with IndentationSettings::divide_once_more
 /// along all their paths, and sets mesh_difference of their samples. With F the force along the

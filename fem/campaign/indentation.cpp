@@ -67,10 +67,10 @@ void stop_early(SiteCurves& curves, const std::string& reason) {
   curves.reason += (curves.reason.empty() ? "" : "; ") + reason;
 }
 
-CurveSample sample_at_rest(const CampaignContext& context) {
+CurveSample sample_at_rest(const CampaignContext& context, const SiteAtRest& rest) {
   CurveSample sample;
   sample.contact_energy = sample.tension = sample.volume_change = 0;
-  sample.min_jacobian = context.at_rest.min_J;
+  sample.min_jacobian = rest.state.min_J;
   if (!context.relaxation.empty())
     sample.isochoric_energy.assign(context.relaxation.fractions.size(), 0.0);
   return sample;
@@ -89,10 +89,10 @@ struct SiteSolver::Site {
         inward(to_eigen(point.inward)),
         body(site_body_at(context, point, mesh_of_site(context))),
         contact(contact_at(context, body.mesh(), X)),
-        touching(tool_at_first_touch(context, contact, body.rest(), point)),
         equilibrium(context, body, member),
-        self_contact(body.mesh(), X, kWatched * context.indentation.tool.extent()),
-        volume_at_rest(body.whole().energy(body.rest()).volume) {}
+        rest(site_at_rest(context, body, contact, equilibrium, point)),
+        touching(tool_at_first_touch(context, contact, rest.u, point, rest.point)),
+        self_contact(body.mesh(), X, kWatched * context.indentation.tool.extent()) {}
 
   /// The tool at a depth below first touch, moved sideways by `aside`.
   Tool tool_at(double depth, const Eigen::Vector3d& aside = Eigen::Vector3d::Zero()) const {
@@ -111,10 +111,10 @@ struct SiteSolver::Site {
   Eigen::Vector3d X, inward;
   SiteBody body;
   ToolContact contact;
-  Tool touching;
   SiteEquilibrium equilibrium;
+  SiteAtRest rest;
+  Tool touching;
   SelfContact self_contact;
-  double volume_at_rest;                          ///< m^3
   std::map<double, LateralStart> lateral_starts;  ///< by depth
 };
 
@@ -156,6 +156,15 @@ bool SiteSolver::press_accurately_to(Site& site, PathDriver& driver, const Incre
   return false;
 }
 
+/// A normal path that has not begun.
+CurvePath SiteSolver::path_at_rest(const Site& site) const {
+  CurvePath path;
+  path.kind = PathKind::Normal;
+  path.direction = to_vec3(site.inward);
+  path.samples.push_back(sample_at_rest(context_, site.rest));
+  return path;
+}
+
 void SiteSolver::run_normal_path(Site& site, const std::vector<double>& stops, SiteCurves& curves) {
   const double tool_radius = context_.indentation.tool.radius;
   const bool no_slip = context_.indentation.friction == ToolFriction::NoSlip;
@@ -164,18 +173,15 @@ void SiteSolver::run_normal_path(Site& site, const std::vector<double>& stops, S
                      .equilibrium = site.equilibrium,
                      .self_contact = site.self_contact,
                      .tool_radius = tool_radius,
-                     .energy_at_rest = context_.at_rest.energy,
-                     .volume_at_rest = site.volume_at_rest,
+                     .energy_at_rest = site.rest.state.energy,
+                     .volume_at_rest = site.rest.state.volume,
                      .follows_work = true,
                      .relaxes = !context_.relaxation.empty(),
                      .tool_at = [&](double depth) { return site.tool_at(depth); }},
-                    site.body.rest());
-  CurvePath path;
-  path.kind = PathKind::Normal;
-  path.direction = to_vec3(site.inward);
-  path.samples.push_back(sample_at_rest(context_));
+                    site.rest.u);
+  CurvePath path = path_at_rest(site);
 
-  Displacement u = site.body.rest();
+  Displacement u = site.rest.u;
   Predictor states;
   states.add(0, u);
   double from = 0;
@@ -226,8 +232,8 @@ void SiteSolver::run_lateral_path(Site& site, const LateralPlan& plan, SiteCurve
        .equilibrium = site.equilibrium,
        .self_contact = site.self_contact,
        .tool_radius = context_.indentation.tool.radius,
-       .energy_at_rest = context_.at_rest.energy,
-       .volume_at_rest = site.volume_at_rest,
+       .energy_at_rest = site.rest.state.energy,
+       .volume_at_rest = site.rest.state.volume,
        .follows_work = false,
        .relaxes = !context_.relaxation.empty(),
        .tool_at = [&](double s) { return site.tool_at(lateral_depth, s * direction); }},
@@ -343,7 +349,13 @@ SiteCurves SiteSolver::solve(std::int32_t vertex, const SitePlan& plan) {
   increments_ = count_increments(plan);
   increments_done_ = 0;
   Site site(context_, context_.press_point(vertex), member_);
-  run_normal_path(site, plan.stops, curves);
+  rest_ = site.rest.u.leftCols(context_.model.mesh().nodes());
+  if (site.rest.failure.empty()) {
+    run_normal_path(site, plan.stops, curves);
+  } else {
+    stop_early(curves, "under its weight, before the touch: " + site.rest.failure);
+    curves.paths.push_back(path_at_rest(site));
+  }
   const std::vector<LateralPlan> paths = within_reach(plan, site);
   for (const LateralPlan& lateral : paths) run_lateral_path(site, lateral, curves);
   for (const LateralPlan& lateral : paths)
@@ -353,7 +365,8 @@ SiteCurves SiteSolver::solve(std::int32_t vertex, const SitePlan& plan) {
   return curves;
 }
 
-SiteCurves solve_site(const CampaignContext& context, std::int32_t vertex, Displacement* pressed) {
+SiteCurves solve_site(const CampaignContext& context, std::int32_t vertex, Displacement* pressed,
+                      Displacement* rest) {
   std::optional<SolvePool> pool;
   std::optional<SolvePool::Member> member;
   if (context.rest_factor) {
@@ -362,7 +375,8 @@ SiteCurves solve_site(const CampaignContext& context, std::int32_t vertex, Displ
   }
   SiteSolver solver(context, member ? &*member : nullptr);
   SiteCurves curves = solver.solve(vertex);
-  if (pressed) *pressed = solver.pressed_state();
+  if (pressed != nullptr) *pressed = solver.pressed_state();
+  if (rest != nullptr) *rest = solver.state_at_rest();
   return curves;
 }
 

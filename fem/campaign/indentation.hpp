@@ -67,6 +67,9 @@ class SiteSolver {
 
   /// The end of the normal path of the site last solved, on the nodes of the body.
   const Displacement& pressed_state() const { return pressed_; }
+  /// The displacement before the touch, on the nodes of the body: of the site last solved, or of
+  /// the present one to an observer.
+  const Displacement& state_at_rest() const { return rest_; }
 
  private:
   struct Site;  ///< geometry and solvers of one site
@@ -82,6 +85,7 @@ class SiteSolver {
   bool press_accurately_to(Site& site, PathDriver& driver, const Increment& increment,
                            const IncrementStart& start, Predictor& states, Displacement& u,
                            CurveSample& sample, std::string& reason);
+  CurvePath path_at_rest(const Site& site) const;
   void run_normal_path(Site& site, const std::vector<double>& stops, SiteCurves& curves);
   void run_lateral_path(Site& site, const LateralPlan& plan, SiteCurves& curves);
   void run_across(Site& site, const LateralPlan& plan, const SiteCurves& curves);
@@ -91,7 +95,7 @@ class SiteSolver {
 
   const CampaignContext& context_;
   SolvePool::Member* member_;
-  Displacement pressed_;
+  Displacement pressed_, rest_;
   Observer observer_;
   BondObserver bond_observer_;
   LateralObserver lateral_observer_;
@@ -101,8 +105,10 @@ class SiteSolver {
   double start_ = 0;                                  ///< s, of its processor time
 };
 
-/// Solves one site alone. `pressed`: the displacement at the end of its normal path; may be null.
-SiteCurves solve_site(const CampaignContext& context, std::int32_t vertex, Displacement* pressed);
+/// Solves one site alone. `pressed`, `rest`: the displacement at the end of its normal path and
+/// before the touch; may be null.
+SiteCurves solve_site(const CampaignContext& context, std::int32_t vertex, Displacement* pressed,
+                      Displacement* rest = nullptr);
 
 /// An upper bound of the memory that a running site needs, bytes.
 double bytes_of_site(const CampaignContext& context, std::int32_t vertex);

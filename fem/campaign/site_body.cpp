@@ -159,17 +159,23 @@ SiteBody::SiteBody(const SolidModel& body, const Displacement& rest, const Eigen
 void SiteBody::refine(const Eigen::Vector3d& site, const ToolGeometry& tool,
                       const SiteRefinement& refinement) {
   const QuadraticMesh& mesh = whole_->mesh();
-  RefinedMesh refined = Division(mesh, site, tool.extent(), refinement).refined();
+  const RefinedMesh refined = Division(mesh, site, tool.extent(), refinement).refined();
   std::vector<bool> free = nodes_within(mesh, site, window_radius(tool));
   for (const RefinedMesh::NewNode& node : refined.new_nodes)
     for (const int neighbour : mesh.tetrahedra[to_index(node.parent)])
       free[to_index(neighbour)] = true;
   free.resize(free.size() + refined.new_nodes.size(), true);
-  refined_.emplace(SolidModel::without_stiffness(*whole_, std::move(refined.mesh)));
+  refined_.emplace(SolidModel::without_stiffness(*whole_, refined));
   window_.emplace(*refined_, std::move(free));
   prolongation_.emplace(refined, mesh.tetrahedra, *refined_);
   rest_.conservativeResize(Eigen::NoChange, refined_->mesh().nodes());
-  rest_.rightCols(refined_->mesh().nodes() - mesh.nodes()).setZero();
+  for (std::size_t i = 0; i < refined.new_nodes.size(); ++i) {
+    const RefinedMesh::NewNode& added = refined.new_nodes[i];
+    Eigen::Vector3d moved = Eigen::Vector3d::Zero();
+    for (std::size_t a = 0; a < kTetNodes; ++a)
+      moved += added.N[a] * rest_.col(mesh.tetrahedra[to_index(added.parent)][a]);
+    rest_.col(mesh.nodes() + static_cast<Eigen::Index>(i)) = moved;
+  }
 }
 
 double SiteBody::bytes() const {

@@ -36,7 +36,8 @@ std::vector<double> field_depths(const IndentationSettings& settings, int count)
 FieldRecorder::FieldRecorder(SiteSolver& solver, const CampaignContext& context,
                              const std::vector<std::int32_t>& nodes, int depths,
                              std::optional<double> friction)
-    : context_(context),
+    : solver_(solver),
+      context_(context),
       nodes_(nodes),
       depths_(field_depths(context.indentation, depths)),
       friction_(friction) {
@@ -87,7 +88,7 @@ std::vector<float> FieldRecorder::since_rest(const Displacement& u) const {
   skin.reserve(3 * nodes_.size());
   for (const std::int32_t node : nodes_)
     for (Eigen::Index i = 0; i < 3; ++i)
-      skin.push_back(static_cast<float>(u(i, node) - context_.rest(i, node)));
+      skin.push_back(static_cast<float>(u(i, node) - solver_.state_at_rest()(i, node)));
   return skin;
 }
 

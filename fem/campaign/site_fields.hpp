@@ -34,6 +34,7 @@ class FieldRecorder {
   void keep_press(double depth, const Displacement& u);
   void keep_lateral(LateralField field, bool is_held);
 
+  const SiteSolver& solver_;
   const CampaignContext& context_;
   const std::vector<std::int32_t>& nodes_;
   std::vector<double> depths_;

@@ -183,8 +183,7 @@ class Refiner {
       const Leaf leaf = leaves_[i];
       for (const Leaf& child : children_of(leaf, edges_[i])) add_element(child);
     }
-    for (std::size_t f = 0; f < whole_.facets.size(); ++f)
-      add_facet(whole_.facets[f], whole_.facet_region[f]);
+    add_facets();
     place_nodes();
     return std::move(refined_);
   }
@@ -276,6 +275,7 @@ class Refiner {
   void add_element(const Leaf& leaf) {
     refined_.mesh.tetrahedra.push_back(leaf.node);
     refined_.mesh.region.push_back(whole_.region[to_index(leaf.base)]);
+    refined_.parent.push_back(leaf.base);
   }
 
   /// The node between two nodes of a leaf; exists already where they are corners.
@@ -338,7 +338,22 @@ class Refiner {
                 "solver.refine_under_tool");
   }
 
-  /// A facet, or its children where edges are split. After the elements: all middle nodes exist.
+  /// After the elements: all middle nodes exist. The children of a facet on springs are on them
+  /// too.
+  void add_facets() {
+    auto sprung = whole_.sprung.begin();
+    for (std::size_t f = 0; f < whole_.facets.size(); ++f) {
+      const std::size_t first = refined_.mesh.facets.size();
+      add_facet(whole_.facets[f], whole_.facet_region[f]);
+      if (sprung == whole_.sprung.end() || to_index(sprung->facet) != f) continue;
+      for (std::size_t child = first; child < refined_.mesh.facets.size(); ++child)
+        refined_.mesh.sprung.push_back({static_cast<std::int32_t>(child), sprung->normal_stiffness,
+                                        sprung->tangential_stiffness});
+      ++sprung;
+    }
+  }
+
+  /// A facet, or its children where edges are split.
   void add_facet(const Facet& facet, std::int32_t region) {
     // Corners 0..2, then the edges 01, 12, 20.
     std::vector<std::array<std::size_t, 3>> parts;

@@ -26,8 +26,9 @@ struct RefinedMesh {
     std::array<double, kTetNodes> N;
   };
 
-  QuadraticMesh mesh;  ///< unrefined elements in their order, then the children; without springs
+  QuadraticMesh mesh;  ///< unrefined elements in their order, then the children
   std::vector<NewNode> new_nodes;
+  std::vector<std::int32_t> parent;  ///< of each element, that of the unrefined mesh
 };
 
 /// Whether an element that has been divided into eight `level` times is to be divided again.

@@ -69,7 +69,8 @@ class Press {
             contact_at(context, context.model.mesh(), context.reference_position(point_.position)),
             {std::move(series), context.model.mesh().region},
             {}} {
-    touching_ = tool_at_first_touch(context, here_.contact, here_.u, point_);
+    touching_ = tool_at_first_touch(context, here_.contact, here_.u, point_,
+                                    context.rest_position(point_.position));
     here_.contact.move_to(touching_);
     if (no_slip_) here_.contact.bond(here_.u, kTouching * touching_.geometry.radius);
   }

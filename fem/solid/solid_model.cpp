@@ -52,10 +52,21 @@ std::shared_ptr<const Solid> make_solid(const Body& body, std::vector<Law> laws,
   auto solid = std::make_shared<Solid>(Solid{make_quadratic_mesh(body, is_linear(dilatation)),
                                              std::move(laws),
                                              dilatation,
+                                             gravity,
                                              {},
                                              std::move(fibres)});
   solid->weight = nodal_weight(solid->mesh, gravity);
   return solid;
+}
+
+/// The same body on a refined mesh; children have the fibres of their parents.
+std::shared_ptr<const Solid> refined_solid(const Solid& whole, const RefinedMesh& refined) {
+  Solid solid{refined.mesh, whole.laws, whole.dilatation, whole.gravity, {}, {}};
+  solid.weight = nodal_weight(solid.mesh, solid.gravity);
+  if (!whole.fibres.empty())
+    for (const std::int32_t parent : refined.parent)
+      solid.fibres.push_back(whole.fibres[to_index(parent)]);
+  return std::make_shared<const Solid>(std::move(solid));
 }
 
 }  // namespace
@@ -94,15 +105,15 @@ SolidModel::SolidModel(const SolidModel& whole, std::vector<bool> free) : solid_
   take_elements(elements);
 }
 
-SolidModel SolidModel::without_stiffness(const SolidModel& whole, QuadraticMesh mesh) {
-  SolidModel model(std::make_shared<const Solid>(
-      Solid{std::move(mesh), whole.solid_->laws, whole.solid_->dilatation, {}, {}}));
+SolidModel SolidModel::without_stiffness(const SolidModel& whole, const RefinedMesh& refined) {
+  SolidModel model(refined_solid(*whole.solid_, refined));
   std::vector<bool> free = model.mesh().fixed;
   free.flip();
   model.number_unknowns(free);
   std::vector<int> elements(model.mesh().tetrahedra.size());
   std::iota(elements.begin(), elements.end(), 0);
   model.make_blocks(elements);
+  model.foundation_ = Foundation(model.mesh(), model.equation_);
   model.pattern_.n = model.unknowns_;
   return model;
 }

@@ -11,6 +11,7 @@
 #include "fem/laws/law.hpp"
 #include "fem/laws/material.hpp"
 #include "fem/mesh/quadratic_mesh.hpp"
+#include "fem/mesh/refined_mesh.hpp"
 #include "fem/solid/dilatation_multipliers.hpp"
 #include "fem/solid/element.hpp"
 #include "fem/solid/foundation.hpp"
@@ -29,6 +30,7 @@ struct Solid {
   QuadraticMesh mesh;
   std::vector<Law> laws;
   Dilatation dilatation;
+  Gravity gravity;
   Eigen::Matrix3Xd weight;  ///< (nodes), N; no columns where there is none
   /// Fibre directions of each element; empty: those of the laws at the centroids.
   std::vector<std::array<Vec3, 2>> fibres;
@@ -54,9 +56,9 @@ class SolidModel {
   /// The same with any choice of free nodes; nodes fixed in `whole` stay fixed.
   SolidModel(const SolidModel& whole, std::vector<bool> free);
 
-  /// The laws of `whole` on another mesh of the body, for energies and forces only: it has no
-  /// stiffness, no weight and no foundation, and its pattern() has only the number of unknowns.
-  static SolidModel without_stiffness(const SolidModel& whole, QuadraticMesh mesh);
+  /// `whole` on a refined mesh of the body, for energies and forces only: it has no stiffness, and
+  /// its pattern() has only the number of unknowns. Not with nodal pressures.
+  static SolidModel without_stiffness(const SolidModel& whole, const RefinedMesh& refined);
 
   /// The same body in a step of its relaxation: with the energy of HistoryStress in place of the
   /// isochoric one. `step` must outlive the model, and may change between calls; while it has no

@@ -176,27 +176,58 @@ TEST(BodyUnderItsWeight, HasNoToolForceBeforeTheFirstContact) {
   }
 }
 
-/// A body given as it lies under its weight is pressed as the body that sags to that shape.
-TEST(BodyUnderItsWeight, GivenAsItLiesIsPressedAsTheBodyThatSagsToIt) {
-  const Body body = test::make_block(test::even(-0.016, 0.016, 4), test::even(-0.016, 0.016, 4),
-                                     test::even(-0.024, 0, 4));
-  CampaignSettings settings = pressing({2e3, 0.45});
-  settings.gravity = {{0, 3, -9.81}, 1000};
-  const CampaignContext sagging(body, settings, Engine::SharedFactor);
+/// The body as it lies at the end of a sag.
+Body lying(const Body& body, const CampaignContext& sagging) {
   const QuadraticMesh& mesh = sagging.model.mesh();
-  const Eigen::Matrix3Xd lying = mesh.X + sagging.rest;
+  const Eigen::Matrix3Xd position = mesh.X + sagging.rest;
   Body given = body;
   for (std::size_t i = 0; i < given.nodes.size(); ++i)
-    given.nodes[i] = to_vec3(lying.col(static_cast<Eigen::Index>(i)));
+    given.nodes[i] = to_vec3(position.col(static_cast<Eigen::Index>(i)));
   for (const Edge& ends : edges_of(given.boundary))
     for (std::size_t e = 0; e < mesh.edges.size(); ++e)
       if (edge_between(mesh.edges[e][0], mesh.edges[e][1]) == ends)
         given.curved_edges.push_back(
-            {ends, to_vec3(lying.col(mesh.corners() + static_cast<Eigen::Index>(e)))});
-  settings.gravity.shape = GivenShape::Loaded;
+            {ends, to_vec3(position.col(mesh.corners() + static_cast<Eigen::Index>(e)))});
+  return given;
+}
+
+class BodyThatSags : public testing::Test {
+ protected:
+  Body body = test::make_block(test::even(-0.016, 0.016, 4), test::even(-0.016, 0.016, 4),
+                               test::even(-0.024, 0, 4));
+  CampaignSettings settings = [] {
+    CampaignSettings s = pressing({2e3, 0.45});
+    s.gravity = {{0, 3, -9.81}, 1000};
+    return s;
+  }();
+  std::int32_t vertex = test::site_nearest(body);
+
+  /// The settings for the shape that lies.
+  CampaignSettings as_it_lies() const {
+    CampaignSettings s = settings;
+    s.gravity.shape = GivenShape::Loaded;
+    return s;
+  }
+
+  static void expect_same_presses(const SiteCurves& one, const SiteCurves& other) {
+    ASSERT_EQ(one.status, SiteStatus::Complete) << one.reason;
+    ASSERT_EQ(other.status, SiteStatus::Complete) << other.reason;
+    for (std::size_t p = 0; p < one.paths.size(); ++p)
+      for (std::size_t i = 1; i < one.paths[p].samples.size(); ++i) {
+        const CurveSample &a = one.paths[p].samples[i], &b = other.paths[p].samples[i];
+        EXPECT_LT(norm(a.force - b.force), 1e-3 * norm(a.force) + 1e-6);
+        EXPECT_NEAR(b.tool_work, b.strain_energy + b.contact_energy, 5e-3 * b.tool_work + 1e-9);
+      }
+  }
+};
+
+/// A body given as it lies under its weight is pressed as the body that sags to that shape.
+TEST_F(BodyThatSags, GivenAsItLiesIsPressedAsTheBodyThatSagsToIt) {
+  const CampaignContext sagging(body, settings, Engine::SharedFactor);
+  const Body given = lying(body, sagging);
+  settings = as_it_lies();
   const CampaignContext loaded(given, settings, Engine::SharedFactor);
   ASSERT_TRUE(loaded.unloaded);
-  const std::int32_t vertex = test::site_nearest(body);
   const Vec3 site = given.nodes[to_index(given.response.node[to_index(vertex)])];
   EXPECT_EQ(to_vec3(loaded.rest_position(site)), site);
   const Vec3 at_rest = body.nodes[to_index(body.response.node[to_index(vertex)])];
@@ -205,19 +236,35 @@ TEST(BodyUnderItsWeight, GivenAsItLiesIsPressedAsTheBodyThatSagsToIt) {
 
   Displacement u, v;
   const SiteCurves one = solve_site(sagging, vertex, &u), other = solve_site(loaded, vertex, &v);
-  ASSERT_EQ(one.status, SiteStatus::Complete) << one.reason;
-  ASSERT_EQ(other.status, SiteStatus::Complete) << other.reason;
-  for (std::size_t p = 0; p < one.paths.size(); ++p)
-    for (std::size_t i = 1; i < one.paths[p].samples.size(); ++i) {
-      const CurveSample &a = one.paths[p].samples[i], &b = other.paths[p].samples[i];
-      EXPECT_LT(norm(a.force - b.force), 1e-3 * norm(a.force) + 1e-6);
-      EXPECT_NEAR(b.tool_work, b.strain_energy + b.contact_energy, 5e-3 * b.tool_work + 1e-9);
-    }
+  expect_same_presses(one, other);
   // Fields are displacements from the given shape.
   const DeformedState state = deformed_state(given, settings, vertex);
   const std::int32_t node = given.response.node[to_index(vertex)];
   const Eigen::Vector3d moved = u.col(node) - sagging.rest.col(node);
   EXPECT_LT((v.col(node) - loaded.rest.col(node) - moved).norm(), 1e-3 * moved.norm());
+  EXPECT_LT((to_eigen(state.displacement[to_index(node)]) - moved).norm(), 1e-3 * moved.norm());
+}
+
+/// The same with elements that are refined under the tool and sag further.
+TEST_F(BodyThatSags, RefinedAndGivenAsItLiesIsPressedAsTheBodyThatSagsToIt) {
+  // Without equal lengths, which rounding would compare: both are then refined in the same way.
+  test::deform(body, [](const Vec3& x) {
+    return Vec3{1.05 * x[0] + 0.11 * x[1] + 0.05 * x[2], 1.07 * x[1] + 0.06 * x[2], 1.03 * x[2]};
+  });
+  const Body given = lying(body, CampaignContext(body, settings, Engine::SharedFactor));
+  settings.indentation.increments = 4;
+  settings.indentation.lateral_increments = 3;
+  settings.indentation.refine_under_tool = 1;
+  Displacement u, rest;
+  const SiteCurves one =
+      solve_site(CampaignContext(body, settings, Engine::SharedFactor), vertex, &u, &rest);
+  settings = as_it_lies();
+  const SiteCurves other =
+      solve_site(CampaignContext(given, settings, Engine::SharedFactor), vertex, nullptr);
+  expect_same_presses(one, other);
+  const DeformedState state = deformed_state(given, settings, vertex);
+  const std::int32_t node = given.response.node[to_index(vertex)];
+  const Eigen::Vector3d moved = u.col(node) - rest.col(node);
   EXPECT_LT((to_eigen(state.displacement[to_index(node)]) - moved).norm(), 1e-3 * moved.norm());
 }
 

@@ -59,14 +59,14 @@ TEST(FinerMesh, ChoosesSitesFarApart) {
 TEST(FinerMesh, CountsEveryTenthSiteOfFewButTwo) {
   const Body body = uneven_block();
   CampaignSettings settings = pressed();
-  EXPECT_EQ(count_on_finer_mesh(body, settings, 100), 0);
+  EXPECT_EQ(count_on_finer_mesh(settings, 100), 0);
   settings.mesh_error_sites = 4;
-  EXPECT_EQ(count_on_finer_mesh(body, settings, 100), 4);
-  EXPECT_EQ(count_on_finer_mesh(body, settings, 35), 3);
-  EXPECT_EQ(count_on_finer_mesh(body, settings, 5), 2);
-  EXPECT_EQ(count_on_finer_mesh(body, settings, 1), 1);
+  EXPECT_EQ(count_on_finer_mesh(settings, 100), 4);
+  EXPECT_EQ(count_on_finer_mesh(settings, 35), 3);
+  EXPECT_EQ(count_on_finer_mesh(settings, 5), 2);
+  EXPECT_EQ(count_on_finer_mesh(settings, 1), 1);
   settings.dilatation = Dilatation::Nodal;
-  EXPECT_EQ(count_on_finer_mesh(body, settings, 100), 0);
+  EXPECT_EQ(count_on_finer_mesh(settings, 100), 0);
 }
 
 /// Three sites bound the error of others, which is known from elements that are small beside the

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "fem/mesh/to_eigen.hpp"
+#include "format/to_index.hpp"
 #include "tests/support/block_body.hpp"
 
 namespace palpate::fem {
@@ -47,6 +48,39 @@ TEST(FirstTouch, OfANarrowHollowIsAboveThePoint) {
   EXPECT_LE(contact.penetration_of(touch.tool, context.rest), 1e-7 * 0.005);
   touch.tool.tip += 1e-6 * touch.tool.inward;
   EXPECT_GT(contact.penetration_of(touch.tool, context.rest), 0);
+}
+
+/// Elements of half the size sag further than those of the campaign.
+TEST(SiteAtRest, OfRefinedElementsIsInEquilibriumWithTheWeight) {
+  const Body block = test::make_block(test::even(-0.01, 0.01, 4), test::even(-0.01, 0.01, 4),
+                                      test::even(-0.01, 0, 2));
+  CampaignSettings s = settings();
+  s.gravity = {{0, 20, -60}, 1000};
+  s.indentation.refine_under_tool = 1;
+  const CampaignContext context(block, s, Engine::SharedFactor);
+  const std::int32_t site = test::site_nearest(block);
+  const PressPoint point = context.press_point(site);
+  const SiteBody body = site_body_at(context, point, SiteMesh::RefinedWindow);
+  const ToolContact contact =
+      contact_at(context, body.mesh(), context.reference_position(point.position));
+  SolvePool pool(*context.rest_factor, 1);
+  SolvePool::Member member(pool);
+  SiteEquilibrium equilibrium(context, body, &member);
+  const SiteAtRest rest = site_at_rest(context, body, contact, equilibrium, point);
+  ASSERT_EQ(rest.failure, "");
+  Eigen::VectorXd before, after;
+  const SolidModel::State given = body.whole().forces(body.rest(), before);
+  body.whole().forces(rest.u, after);
+  EXPECT_LT(after.norm(), 2 * context.round_off);
+  EXPECT_GT(before.norm(), 1e4 * context.round_off);
+  EXPECT_LT(rest.state.energy, given.energy);
+  // The site is a node of the body, and the tool touches it where it lies.
+  const std::int32_t node = block.response.node[to_index(site)];
+  const Eigen::Vector3d x = body.mesh().X.col(node) + rest.u.col(node);
+  EXPECT_LT((rest.point - x).norm(), 1e-12);
+  EXPECT_GT((rest.u.col(node) - body.rest().col(node)).norm(), 1e-6);
+  const Tool tool = tool_at_first_touch(context, contact, rest.u, point, rest.point);
+  EXPECT_LT((tool.tip - x).norm(), 1e-9);
 }
 
 }  // namespace

@@ -48,6 +48,7 @@ Body refined_body(const Body& body) {
     fine.tetrahedra.push_back({t[0], t[1], t[2], t[3]});
   fine.tetrahedron_region = refined.mesh.region;
   for (const Facet& f : refined.mesh.facets) fine.boundary.push_back({f[0], f[1], f[2]});
+  fine.foundation = refined.mesh.sprung;
   fine.response = body.response;
   return fine;
 }
@@ -295,6 +296,57 @@ TEST(RefineUnderTool, IsTheRefinedBodyWhereTheToolSpansItAll) {
     }
 }
 
+/// The block with springs at its base in place of the support.
+Body block_on_springs(int across, double stiffness) {
+  Body body = block_of(across);
+  body.fixed_nodes.clear();
+  for (std::size_t f = 0; f < body.boundary.size(); ++f)
+    if (std::ranges::all_of(body.boundary[f],
+                            [&](int node) { return body.nodes[to_index(node)][2] < -0.0149; }))
+      body.foundation.push_back({static_cast<std::int32_t>(f), stiffness, 0.5 * stiffness});
+  return body;
+}
+
+// The same of bodies that sag by 1 to 2 mm, without friction as the press and the drag of others.
+TEST(RefineUnderTool, OnSpringsAndUnderWeightIsTheRefinedBody) {
+  constexpr double kSprings = 4e5;
+  const Gravity oblique{{0, 15, -40}, 1000};
+  struct Support {
+    Body body;
+    Gravity gravity;
+  };
+  for (const Support& support :
+       {Support{block_of(4), oblique}, Support{block_on_springs(4, kSprings), {}},
+        Support{block_on_springs(4, kSprings), oblique}}) {
+    CampaignSettings settings = pressed_by(0.027, 0.003);
+    settings.gravity = support.gravity;
+    const SiteCurves ours = press(support.body, settings, 1),
+                     reference = press(refined_body(support.body), settings, 0);
+    ASSERT_EQ(ours.status, SiteStatus::Complete) << ours.reason;
+    ASSERT_EQ(ours.paths.size(), 2u);
+    for (std::size_t p = 0; p < 2; ++p)
+      for (std::size_t i = 1; i < ours.paths[p].samples.size(); ++i) {
+        const CurveSample &a = ours.paths[p].samples[i], &b = reference.paths[p].samples[i];
+        EXPECT_LT(norm(a.force - b.force), 5e-4 * norm(b.force));
+        EXPECT_NEAR(a.strain_energy, b.strain_energy, 1e-3 * b.strain_energy);
+        EXPECT_NEAR(a.volume_change, b.volume_change, 1e-3 * std::abs(b.volume_change) + 1e-12);
+      }
+  }
+}
+
+TEST(RefineUnderTool, ByContactTheWorkOnABodyThatSagsIsItsEnergy) {
+  CampaignSettings settings = pressed_by(0.005, 0.0012);
+  settings.gravity = {{0, 15, -40}, 1000};
+  const SiteCurves site =
+      press(block_on_springs(4, 4e5), settings, IndentationSettings::kByContact, 0.0012, 0.0021);
+  ASSERT_EQ(site.status, SiteStatus::Complete) << site.reason;
+  EXPECT_EQ(site.paths[0].samples.front().strain_energy, 0);
+  for (const CurvePath& path : site.paths) {
+    const CurveSample& end = path.samples.back();
+    EXPECT_NEAR(end.strain_energy + end.contact_energy, end.tool_work, 0.005 * end.tool_work);
+  }
+}
+
 // A contact smaller than a facet, beside the nodes.
 TEST(RefineUnderTool, HasTheForcesOfTheRefinedBodyInSmallContacts) {
   const Body coarse = block_of(6), fine = refined_body(coarse);
@@ -398,7 +450,7 @@ TEST(RefineUnderTool, ConservesEnergyBetweenSmallAndLargeElements) {
   }
 }
 
-TEST(RefineUnderTool, IsRefusedWithNodalPressuresAndWeight) {
+TEST(RefineUnderTool, IsRefusedWithNodalPressures) {
   const Body body = block_of(4);
   CampaignSettings settings = pressed_by(0.005, 0.002);
   settings.dilatation = Dilatation::Nodal;
@@ -408,9 +460,6 @@ TEST(RefineUnderTool, IsRefusedWithNodalPressuresAndWeight) {
   } catch (const Error& error) {
     EXPECT_THAT(error.what(), HasSubstr("refined"));
   }
-  settings.dilatation = Dilatation::Mean;
-  settings.gravity = {{0, 0, -9.81}, 1000};
-  EXPECT_THROW(press(body, settings, 1), Error);
 }
 
 }  // namespace

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "tests/support/block_body.hpp"
 
 namespace palpate::fem {
@@ -14,7 +17,7 @@ class Prolongations : public testing::Test {
       test::make_block(test::even(0, 0.02, 3), test::even(0, 0.02, 3), test::even(0, 0.02, 3));
   SolidModel coarse{body, {NeoHookean::from_young_poisson(10e3, 0.45, "t")}};
   RefinedMesh refined = refine_elements(coarse.mesh(), {40, 41, 42, 77});
-  SolidModel fine = SolidModel::without_stiffness(coarse, refined.mesh);
+  SolidModel fine = SolidModel::without_stiffness(coarse, refined);
   Prolongation prolongation{refined, coarse.mesh().tetrahedra, fine};
 };
 
@@ -40,6 +43,39 @@ TEST_F(Prolongations, ReduceByTheTranspose) {
   const Eigen::VectorXd d = Eigen::VectorXd::Random(coarse.pattern().n),
                         f = Eigen::VectorXd::Random(fine.pattern().n);
   EXPECT_NEAR(prolongation.reduced(f).dot(d), f.dot(prolongation.extended(d)), 1e-10);
+}
+
+/// A body on springs under its weight, all of whose energies are those of its elements where the
+/// displacement is linear.
+TEST(RefinedModel, HasTheWeightAndTheSpringsOfTheBody) {
+  Body body =
+      test::make_block(test::even(0, 0.02, 3), test::even(0, 0.02, 3), test::even(0, 0.02, 3));
+  body.fixed_nodes.clear();
+  for (std::size_t f = 0; f < body.boundary.size(); ++f)
+    if (std::ranges::all_of(body.boundary[f],
+                            [&](int node) { return body.nodes[to_index(node)][2] == 0; }))
+      body.foundation.push_back({static_cast<std::int32_t>(f), 3e5, 1e5});
+  const SolidModel coarse(body, {NeoHookean::from_young_poisson(10e3, 0.45, "t")}, Dilatation::Mean,
+                          {{1, 2, -9.81}, 1000});
+  std::vector<int> at_base;
+  for (int e = 0; e < 40; ++e) at_base.push_back(e);
+  const RefinedMesh refined = refine_elements(coarse.mesh(), at_base);
+  ASSERT_GT(refined.mesh.sprung.size(), coarse.mesh().sprung.size());
+  const SolidModel fine = SolidModel::without_stiffness(coarse, refined);
+  Eigen::Matrix3d gradient;
+  gradient << 0.02, 0.01, -0.03, 0.0, -0.04, 0.02, 0.05, 0.01, -0.02;
+  const auto field = [&](const SolidModel& model) -> Displacement {
+    return (gradient * model.mesh().X).colwise() + Eigen::Vector3d(1e-3, -2e-3, 5e-4);
+  };
+  const Displacement u = field(coarse), v = field(fine);
+  const SolidModel::State a = coarse.energy(u), b = fine.energy(v);
+  EXPECT_NEAR(a.energy, b.energy, 1e-12 * std::abs(a.energy));
+  EXPECT_NEAR(a.volume, b.volume, 1e-12 * a.volume);
+  Eigen::VectorXd f, g;
+  coarse.forces(u, f);
+  fine.forces(v, g);
+  const Prolongation prolongation(refined, coarse.mesh().tetrahedra, fine);
+  EXPECT_LT((prolongation.reduced(g) - f).norm(), 1e-12 * f.norm());
 }
 
 }  // namespace
