@@ -55,7 +55,7 @@ void check_refinement(const Body& body, const CampaignSettings& settings, Engine
 }  // namespace
 
 std::string obstacle_to_refinement(const CampaignSettings& settings) {
-  return has_nodal_pressure(settings.dilatation) ? "with nodal pressures" : "";
+  return is_linear(settings.dilatation) ? "with linear displacements (tet4)" : "";
 }
 
 /// The model and its equilibrium before the touch.

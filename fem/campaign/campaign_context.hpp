@@ -82,8 +82,7 @@ class OwnFactorPlace {
   std::counting_semaphore<>& places_;
 };
 
-/// Why elements cannot be refined under the tool: refined ones have pressures of elements alone.
-/// Empty where they can.
+/// Why elements cannot be refined under the tool: refined ones are quadratic. Empty where they can.
 std::string obstacle_to_refinement(const CampaignSettings& settings);
 
 /// From the largest Young's modulus at rest of the regions at the boundary: stiffer regions inside

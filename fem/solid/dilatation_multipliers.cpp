@@ -30,7 +30,7 @@ double shear_modulus_at_rest(const Law& law) {
 
 }  // namespace
 
-DilatationMultipliers::DilatationMultipliers(const std::vector<Law>& laws, std::size_t elements) {
+DilatationMultipliers::DilatationMultipliers(const std::vector<Law>& laws, std::size_t pressures) {
   for (const Law& law : laws) {
     const double kappa = law.pressure_slope(Lanes::Constant(1))[0];
     const double penalty = kPenalty * shear_modulus_at_rest(law);
@@ -38,15 +38,15 @@ DilatationMultipliers::DilatationMultipliers(const std::vector<Law>& laws, std::
     kappa_a_.push_back(kappa > kWorthwhile * penalty ? penalty : 0);
   }
   if (std::ranges::any_of(kappa_a_, [](double penalty) { return penalty > 0; }))
-    values.assign(elements, 0.0);
+    values.assign(pressures, 0.0);
 }
 
 AugmentedVolume DilatationMultipliers::augmented(const Law& law, int region,
-                                                 const std::array<int, kLanes>& element) const {
+                                                 const std::array<int, kLanes>& pressure) const {
   AugmentedVolume augmented{law, kappa_[to_index(region)], kappa_a_[to_index(region)],
                             Lanes::Zero()};
   for (int lane = 0; lane < kLanes; ++lane)
-    augmented.p[lane] = values[to_index(element[to_index(lane)])];
+    augmented.p[lane] = values[to_index(pressure[to_index(lane)])];
   return augmented;
 }
 

@@ -11,23 +11,24 @@ namespace palpate::fem {
 
 /// The multipliers of nearly incompressible elements, see AugmentedVolume: a solver sees a solid of
 /// moderate bulk modulus, and the multipliers restore the true one. Regions whose Poisson's ratio
-/// is moderate have none and keep their law.
+/// is moderate have none and keep their law. Each pressure has one: that of an element, or that of
+/// a place of NodalPressure.
 class DilatationMultipliers {
  public:
   /// For a solid in which no region has any.
   DilatationMultipliers() = default;
-  /// Multipliers of 0. `laws`: of the regions; `elements`: of the mesh.
-  DilatationMultipliers(const std::vector<Law>& laws, std::size_t elements);
+  /// Multipliers of 0. `laws`: of the regions; `pressures`: their number.
+  DilatationMultipliers(const std::vector<Law>& laws, std::size_t pressures);
 
   /// Whether any region has multipliers.
   bool any() const { return !values.empty(); }
-  /// Whether the elements of a region have multipliers.
+  /// Whether the pressures of a region have multipliers.
   bool relax(int region) const { return any() && kappa_a_[to_index(region)] > 0; }
-  /// The law of a region that has multipliers, with those of eight of its elements.
+  /// The law of a region that has multipliers, with those of eight of its pressures.
   AugmentedVolume augmented(const Law& law, int region,
-                            const std::array<int, kLanes>& element) const;
+                            const std::array<int, kLanes>& pressure) const;
 
-  std::vector<double> values;  ///< by element of the mesh, Pa; empty where no region has any
+  std::vector<double> values;  ///< Pa; empty where no region has any
 
  private:
   std::vector<double> kappa_;    ///< by region, Pa

@@ -62,15 +62,23 @@ ElementKinematics<Lanes> SolidModel::turned(const Block& block, const Displaceme
 
 namespace {
 
-/// f of the law of a block: in a step of relaxation the scaled one, augmented where its region has
-/// multipliers.
+/// f of the law of a block: in a step of relaxation the scaled one, augmented where its elements
+/// have multipliers.
 template <class Block, class F>
 auto with_law(const Solid& solid, const Block& block, const HistoryStress* step,
               const DilatationMultipliers* multipliers, F&& f) {
   const Law& law = solid.laws[to_index(block.region)];
   if (step != nullptr) return f(ScaledIsochoric{law, step->factor[to_index(block.region)]});
-  if (multipliers == nullptr || !multipliers->relax(block.region)) return f(law);
+  if (multipliers == nullptr || !multipliers->relax(block.region) ||
+      has_nodal_pressure(solid.dilatation))
+    return f(law);
   return f(multipliers->augmented(law, block.region, block.element));
+}
+
+std::array<int, kLanes> all_lanes(int index) {
+  std::array<int, kLanes> lanes;
+  lanes.fill(index);
+  return lanes;
 }
 
 /// The values of eight elements.
@@ -111,8 +119,7 @@ Lanes mean_stress(const Law& law, const PointPressures<Lanes>& pressure,
 }  // namespace
 
 template <class Kinematics>
-SolidModel::PointState SolidModel::point_state(const Kinematics& kinematics_of) const {
-  PointState state;
+std::vector<double> SolidModel::point_dilatations(const Kinematics& kinematics_of) const {
   const auto& points = nodal_.points();
   std::vector<double> mean(points.size(), 0.0);
   for (const Block& block : blocks_) {
@@ -127,18 +134,36 @@ SolidModel::PointState SolidModel::point_state(const Kinematics& kinematics_of) 
           mean[to_index(point)] += part[lane];
     }
   }
+  for (std::size_t n = 0; n < points.size(); ++n) mean[n] /= points[n].volume;
+  return mean;
+}
+
+template <class Kinematics>
+SolidModel::PointState SolidModel::point_state(const Kinematics& kinematics_of,
+                                               const DilatationMultipliers* multipliers) const {
+  PointState state;
+  const auto& points = nodal_.points();
+  const std::vector<double> mean = point_dilatations(kinematics_of);
   for (std::size_t n = 0; n < points.size(); ++n) {
-    const Law& law = solid_->laws[to_index(points[n].region)];
-    const Lanes J = Lanes::Constant(mean[n] / points[n].volume);
-    state.pressure.push_back(law.pressure(J)[0]);
-    state.slope.push_back(law.pressure_slope(J)[0]);
-    state.energy += points[n].volume * law.volumetric_energy(J)[0];
+    const int region = points[n].region;
+    const Lanes J = Lanes::Constant(mean[n]);
+    const auto add = [&](const auto& law) {
+      state.pressure.push_back(law.pressure(J)[0]);
+      state.slope.push_back(law.pressure_slope(J)[0]);
+      state.energy += points[n].volume * law.volumetric_energy(J)[0];
+    };
+    const Law& law = solid_->laws[to_index(region)];
+    if (multipliers != nullptr && multipliers->relax(region))
+      add(multipliers->augmented(law, region, all_lanes(points[n].place)));
+    else
+      add(law);
   }
   return state;
 }
 
-SolidModel::PointState SolidModel::point_state(const Displacement& u) const {
-  return point_state([&](const Block& block) { return kinematics_of(block, u); });
+SolidModel::PointState SolidModel::point_state(const Displacement& u,
+                                               const DilatationMultipliers* multipliers) const {
+  return point_state([&](const Block& block) { return kinematics_of(block, u); }, multipliers);
 }
 
 template <class L>
@@ -245,7 +270,7 @@ SolidModel::State SolidModel::energy(const Displacement& u,
         });
     state.energy += energy.head(block.count).sum() + energy_of_history(block, k);
   }
-  state.energy += point_state(u).energy + foundation_.energy(u) - work_of_gravity(u);
+  state.energy += point_state(u, multipliers).energy + foundation_.energy(u) - work_of_gravity(u);
   return checked(state);
 }
 
@@ -253,7 +278,7 @@ SolidModel::State SolidModel::forces(const Displacement& u, Eigen::VectorXd& f,
                                      const DilatationMultipliers* multipliers) const {
   State state;
   f.setZero(pattern_.n);
-  const PointState points = point_state(u);
+  const PointState points = point_state(u, multipliers);
   for (const Block& block : blocks_) {
     const auto k = kinematics_of(block, u);
     state.min_J = std::min(state.min_J, smallest(k));
@@ -288,7 +313,7 @@ void SolidModel::assemble_stiffness(const Kinematics& kinematics_of, const Histo
   values.assign(to_index(pattern_.nonzeros()), 0.0);
   ElementMatrix<Lanes> K;
   const int* position = scatter_.data();
-  const PointState points = point_state(kinematics_of);
+  const PointState points = point_state(kinematics_of, multipliers);
   for (const Block& block : blocks_) {
     const auto k = kinematics_of(block);
     with_law(*solid_, block, step, multipliers, [&](const auto& law) {
@@ -343,31 +368,42 @@ void SolidModel::turned_stiffness(const Displacement& u, std::vector<double>& va
 }
 
 DilatationMultipliers SolidModel::multipliers() const {
-  if (solid_->dilatation != Dilatation::Mean) return {};
-  return {solid_->laws, mesh().tetrahedra.size()};
+  if (solid_->dilatation == Dilatation::Mean) return {solid_->laws, mesh().tetrahedra.size()};
+  if (solid_->dilatation == Dilatation::Nodal) return {solid_->laws, nodal_.places()};
+  return {};
 }
 
 template <class Pressure>
 void SolidModel::set(const Displacement& u, DilatationMultipliers& multipliers,
                      Pressure&& pressure) const {
+  if (has_nodal_pressure(solid_->dilatation)) {
+    const std::vector<double> J =
+        point_dilatations([&](const Block& block) { return kinematics_of(block, u); });
+    for (std::size_t n = 0; n < J.size(); ++n) {
+      const NodalPressure::Point& point = nodal_.points()[n];
+      if (multipliers.relax(point.region))
+        multipliers.values[to_index(point.place)] =
+            pressure(point.region, all_lanes(point.place), Lanes::Constant(J[n]))[0];
+    }
+    return;
+  }
   for (const Block& block : blocks_) {
     if (!multipliers.relax(block.region)) continue;
-    const Lanes p = pressure(block, kinematics_of(block, u).mean_J);
+    const Lanes p = pressure(block.region, block.element, kinematics_of(block, u).mean_J);
     for (int lane = 0; lane < block.count; ++lane)
       multipliers.values[to_index(block.element[to_index(lane)])] = p[lane];
   }
 }
 
 void SolidModel::update(const Displacement& u, DilatationMultipliers& multipliers) const {
-  set(u, multipliers, [&](const Block& block, const Lanes& J) {
-    const Law& law = solid_->laws[to_index(block.region)];
-    return multipliers.augmented(law, block.region, block.element).pressure(J);
+  set(u, multipliers, [&](int region, const std::array<int, kLanes>& pressure, const Lanes& J) {
+    return multipliers.augmented(solid_->laws[to_index(region)], region, pressure).pressure(J);
   });
 }
 
 void SolidModel::take_pressures(const Displacement& u, DilatationMultipliers& multipliers) const {
-  set(u, multipliers, [&](const Block& block, const Lanes& J) {
-    return solid_->laws[to_index(block.region)].pressure(J);
+  set(u, multipliers, [&](int region, const std::array<int, kLanes>&, const Lanes& J) {
+    return solid_->laws[to_index(region)].pressure(J);
   });
 }
 

@@ -16,10 +16,11 @@ NodalPressure::NodalPressure(const QuadraticMesh& mesh, const std::vector<int>& 
   point_at_.assign((to_index(last_corner) + 1) * to_index(regions_), -1);
   for (const int e : elements)
     for (std::size_t c = 0; c < 4; ++c) {
-      int& point = point_at_[key(mesh, e, c)];
+      const std::size_t place = key(mesh, e, c);
+      int& point = point_at_[place];
       if (point >= 0) continue;
       point = static_cast<int>(points_.size());
-      points_.push_back({mesh.region[to_index(e)], 0, {}});
+      points_.push_back({static_cast<int>(place), mesh.region[to_index(e)], 0, {}});
     }
   for (int e = 0; e < static_cast<int>(mesh.tetrahedra.size()); ++e) {
     const std::array<int, 4> mine = points_of(mesh, e);

@@ -19,6 +19,7 @@ namespace palpate::fem {
 class NodalPressure {
  public:
   struct Point {
+    int place = 0;  ///< of its corner node and region, the same in every part of a mesh
     int region = 0;
     double volume = 0;                ///< V_n, m^3
     std::vector<std::int32_t> nodes;  ///< free nodes of the elements around it, ascending
@@ -31,6 +32,8 @@ class NodalPressure {
                 const std::vector<int>& equation);
 
   const std::vector<Point>& points() const { return points_; }
+  /// Number of places, of which not all have points.
+  std::size_t places() const { return point_at_.size(); }
   /// All elements with a point at a corner: those of the constructor and their neighbours.
   const std::vector<int>& elements() const { return elements_; }
   /// The points at the corners of an element, -1 where there is none.

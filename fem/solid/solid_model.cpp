@@ -112,6 +112,8 @@ SolidModel SolidModel::without_stiffness(const SolidModel& whole, const RefinedM
   model.number_unknowns(free);
   std::vector<int> elements(model.mesh().tetrahedra.size());
   std::iota(elements.begin(), elements.end(), 0);
+  if (has_nodal_pressure(whole.solid_->dilatation))
+    model.nodal_ = NodalPressure(model.mesh(), elements, model.equation_);
   model.make_blocks(elements);
   model.foundation_ = Foundation(model.mesh(), model.equation_);
   model.pattern_.n = model.unknowns_;

@@ -57,7 +57,7 @@ class SolidModel {
   SolidModel(const SolidModel& whole, std::vector<bool> free);
 
   /// `whole` on a refined mesh of the body, for energies and forces only: it has no stiffness, and
-  /// its pattern() has only the number of unknowns. Not with nodal pressures.
+  /// its pattern() has only the number of unknowns. Not with linear displacements.
   static SolidModel without_stiffness(const SolidModel& whole, const RefinedMesh& refined);
 
   /// The same body in a step of its relaxation: with the energy of HistoryStress in place of the
@@ -98,7 +98,8 @@ class SolidModel {
   /// are inverted as well. Springs are those at rest.
   void turned_stiffness(const Displacement& u, std::vector<double>& values) const;
 
-  /// Multipliers of 0; none with other pressures than those of the elements.
+  /// Multipliers of 0; none for the displacement element, which has no pressures, and for linear
+  /// elements, whose pressures alternate: multipliers would take more steps to follow.
   DilatationMultipliers multipliers() const;
   /// The step of the method of multipliers at `u`.
   void update(const Displacement& u, DilatationMultipliers& multipliers) const;
@@ -180,8 +181,12 @@ class SolidModel {
   double work_of_gravity(const Displacement& u) const;  ///< on the free nodes, J
   /// `kinematics_of`: of a block.
   template <class Kinematics>
-  PointState point_state(const Kinematics& kinematics_of) const;
-  PointState point_state(const Displacement& u) const;
+  std::vector<double> point_dilatations(const Kinematics& kinematics_of) const;  ///< Jbar_n
+  template <class Kinematics>
+  PointState point_state(const Kinematics& kinematics_of,
+                         const DilatationMultipliers* multipliers) const;
+  PointState point_state(const Displacement& u,
+                         const DilatationMultipliers* multipliers = nullptr) const;
   /// The smallest eigenvalue of the acoustic tensor at the points of each element of a block, Pa;
   /// where it is positive, a positive lower value.
   Lanes min_acoustic_eigenvalues(const Block& block, const ElementKinematics<Lanes>& k) const;
@@ -189,7 +194,7 @@ class SolidModel {
   PointPressures<Lanes> pressures(const L& law, const Block& block,
                                   const ElementKinematics<Lanes>& k,
                                   const PointState& points) const;
-  /// Sets the multipliers of each block to pressure(block, mean J).
+  /// Sets the multipliers to pressure(region, which of them, mean J).
   template <class Pressure>
   void set(const Displacement& u, DilatationMultipliers& multipliers, Pressure&& pressure) const;
   template <class Kinematics>

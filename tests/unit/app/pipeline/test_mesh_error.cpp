@@ -39,11 +39,11 @@ TEST_F(MeshErrorStage, PressesNothingWhereItIsNotWanted) {
 TEST_F(MeshErrorStage, SaysWhyTheErrorStaysUnknown) {
   fem::CampaignSettings settings = campaign_settings(files_.space);
   settings.mesh_error_sites = 4;
-  settings.dilatation = fem::Dilatation::Nodal;
+  settings.dilatation = fem::Dilatation::LinearNodal;
   EXPECT_TRUE(estimate(settings).empty());
   ASSERT_EQ(events_.size(), 1U);
   EXPECT_THAT(std::get<LogLine>(events_.front()).text,
-              HasSubstr("stays unknown: elements cannot be refined under the tool with nodal"));
+              HasSubstr("stays unknown: elements cannot be refined under the tool with linear"));
 }
 
 TEST_F(MeshErrorStage, IsOneSentence) {

@@ -65,7 +65,7 @@ TEST(FinerMesh, CountsEveryTenthSiteOfFewButTwo) {
   EXPECT_EQ(count_on_finer_mesh(settings, 35), 3);
   EXPECT_EQ(count_on_finer_mesh(settings, 5), 2);
   EXPECT_EQ(count_on_finer_mesh(settings, 1), 1);
-  settings.dilatation = Dilatation::Nodal;
+  settings.dilatation = Dilatation::LinearNodal;
   EXPECT_EQ(count_on_finer_mesh(settings, 100), 0);
 }
 

@@ -284,16 +284,19 @@ TEST(RefinedMesh, RefusesAnElementThatACurvedEdgeInverts) {
 // A tool as large as the body: the site refines every element.
 TEST(RefineUnderTool, IsTheRefinedBodyWhereTheToolSpansItAll) {
   const Body coarse = block_of(4), fine = refined_body(coarse);
-  const CampaignSettings settings = pressed_by(0.027, 0.003);
-  const SiteCurves ours = press(coarse, settings, 1), reference = press(fine, settings, 0);
-  ASSERT_EQ(ours.status, SiteStatus::Complete) << ours.reason;
-  ASSERT_EQ(ours.paths.size(), 2u);
-  for (std::size_t p = 0; p < 2; ++p)
-    for (std::size_t i = 1; i < ours.paths[p].samples.size(); ++i) {
-      const CurveSample &a = ours.paths[p].samples[i], &b = reference.paths[p].samples[i];
-      EXPECT_LT(norm(a.force - b.force), 5e-4 * norm(b.force));
-      EXPECT_NEAR(a.strain_energy, b.strain_energy, 1e-3 * b.strain_energy);
-    }
+  CampaignSettings settings = pressed_by(0.027, 0.003);
+  for (const Dilatation element : {Dilatation::Mean, Dilatation::Nodal}) {
+    settings.dilatation = element;
+    const SiteCurves ours = press(coarse, settings, 1), reference = press(fine, settings, 0);
+    ASSERT_EQ(ours.status, SiteStatus::Complete) << ours.reason;
+    ASSERT_EQ(ours.paths.size(), 2u);
+    for (std::size_t p = 0; p < 2; ++p)
+      for (std::size_t i = 1; i < ours.paths[p].samples.size(); ++i) {
+        const CurveSample &a = ours.paths[p].samples[i], &b = reference.paths[p].samples[i];
+        EXPECT_LT(norm(a.force - b.force), 5e-4 * norm(b.force)) << name_of(element);
+        EXPECT_NEAR(a.strain_energy, b.strain_energy, 1e-3 * b.strain_energy);
+      }
+  }
 }
 
 /// The block with springs at its base in place of the support.
@@ -450,10 +453,10 @@ TEST(RefineUnderTool, ConservesEnergyBetweenSmallAndLargeElements) {
   }
 }
 
-TEST(RefineUnderTool, IsRefusedWithNodalPressures) {
+TEST(RefineUnderTool, IsRefusedWithLinearDisplacements) {
   const Body body = block_of(4);
   CampaignSettings settings = pressed_by(0.005, 0.002);
-  settings.dilatation = Dilatation::Nodal;
+  settings.dilatation = Dilatation::LinearNodal;
   try {
     press(body, settings, 1);
     FAIL() << "accepted";

@@ -41,20 +41,21 @@ TEST(DilatationMultipliers, SoftenTheVolumeToThatOfAModerateSolid) {
   EXPECT_NEAR(slope, 1 / (1 / kappa + 1 / moderate), 1e-9 * slope);
 }
 
-class DilatedBlock : public testing::Test {
+class DilatedBlock : public testing::TestWithParam<Dilatation> {
  protected:
   Body body =
       test::make_block(test::even(0, 0.01, 2), test::even(0, 0.01, 2), test::even(0, 0.01, 2));
-  SolidModel model{body, {tissue(0.4999)}};
+  SolidModel model{body, {tissue(0.4999)}, GetParam()};
   const double stretch = 1.0003, J = stretch * stretch * stretch;
   Displacement u = (stretch - 1) * model.mesh().X;
   DilatationMultipliers multipliers = model.multipliers();
 };
 
-TEST_F(DilatedBlock, HasThePressureOfItsDilatation) {
+TEST_P(DilatedBlock, HasThePressureOfItsDilatation) {
   model.take_pressures(u, multipliers);
   const double kappa = kYoung / (3 * (1 - 2 * 0.4999));
-  ASSERT_EQ(multipliers.values.size(), model.mesh().tetrahedra.size());
+  ASSERT_EQ(multipliers.values.size(),
+            GetParam() == Dilatation::Mean ? model.mesh().tetrahedra.size() : body.nodes.size());
   for (const double p : multipliers.values) EXPECT_NEAR(p, kappa / 2 * (J - 1 / J), 1e-9 * kappa);
   const std::vector<double> before = multipliers.values;
   model.update(u, multipliers);
@@ -62,7 +63,7 @@ TEST_F(DilatedBlock, HasThePressureOfItsDilatation) {
     EXPECT_NEAR(multipliers.values[e], before[e], 1e-9 * before[e]);
 }
 
-TEST_F(DilatedBlock, HasTheEnergyAndTheForcesOfItsLawAtThePressures) {
+TEST_P(DilatedBlock, HasTheEnergyAndTheForcesOfItsLawAtThePressures) {
   model.take_pressures(u, multipliers);
   Eigen::VectorXd exact, relaxed;
   const SolidModel::State law = model.forces(u, exact);
@@ -73,7 +74,7 @@ TEST_F(DilatedBlock, HasTheEnergyAndTheForcesOfItsLawAtThePressures) {
 }
 
 /// Forces and stiffness with any multipliers are derivatives of the energy with these.
-TEST_F(DilatedBlock, HasDerivativesOfTheRelaxedEnergy) {
+TEST_P(DilatedBlock, HasDerivativesOfTheRelaxedEnergy) {
   for (std::size_t e = 0; e < multipliers.values.size(); ++e)
     multipliers.values[e] = 100.0 * static_cast<double>(e) - 3e3;
   Eigen::VectorXd f, low, high;
@@ -96,10 +97,15 @@ TEST_F(DilatedBlock, HasDerivativesOfTheRelaxedEnergy) {
   EXPECT_LT((Kd - difference).norm(), 1e-5 * Kd.norm());
 }
 
-TEST(DilatationMultipliersOfAModel, AreThoseOfElementPressures) {
+INSTANTIATE_TEST_SUITE_P(Elements, DilatedBlock,
+                         testing::Values(Dilatation::Mean, Dilatation::Nodal));
+
+TEST(DilatationMultipliersOfAModel, AreThoseOfItsPressures) {
   const Body body =
       test::make_block(test::even(0, 0.01, 1), test::even(0, 0.01, 1), test::even(0, 0.01, 1));
-  EXPECT_FALSE(SolidModel(body, {tissue(0.4999)}, Dilatation::Nodal).multipliers().any());
+  EXPECT_TRUE(SolidModel(body, {tissue(0.4999)}, Dilatation::Nodal).multipliers().any());
+  EXPECT_FALSE(SolidModel(body, {tissue(0.49)}, Dilatation::Nodal).multipliers().any());
+  EXPECT_FALSE(SolidModel(body, {tissue(0.4999)}, Dilatation::LinearNodal).multipliers().any());
   EXPECT_FALSE(SolidModel(body, {tissue(0.4999)}, Dilatation::Pointwise).multipliers().any());
   EXPECT_TRUE(SolidModel(body, {tissue(0.4999)}).multipliers().any());
 }

@@ -18,8 +18,9 @@ namespace palpate::fem {
 inline constexpr double kYoung = 10e3, kToolRadius = 0.005;
 
 struct PressedBody {
-  explicit PressedBody(double window_radius, double poisson = 0.45)
-      : whole(body, {NeoHookean::from_young_poisson(kYoung, poisson, "t")}),
+  explicit PressedBody(double window_radius, double poisson = 0.45,
+                       Dilatation element = Dilatation::Mean)
+      : whole(body, {NeoHookean::from_young_poisson(kYoung, poisson, "t")}, element),
         window(whole, Eigen::Vector3d::Zero(), window_radius),
         factor(whole.pattern()) {
     const DilatationMultipliers multipliers = whole.multipliers();

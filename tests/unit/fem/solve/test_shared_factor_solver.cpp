@@ -75,10 +75,12 @@ TEST(SharedFactorSolver, FollowsALiftedTool) {
   expect_newtons_equilibria({0.001, 0.002, 0.001, 0.0004, 0.0001, 0.002});
 }
 
+class NearlyIncompressible : public testing::TestWithParam<Dilatation> {};
+
 /// Without multipliers an increment takes hundreds of steps at nu = 0.4999.
-TEST(SharedFactorSolver, FindsNearlyIncompressibleEquilibriaInFewIterations) {
+TEST_P(NearlyIncompressible, EquilibriaTakeFewIterations) {
   for (const double poisson : {0.499, 0.49999}) {
-    PressedBody p(2 * kToolRadius, poisson);
+    PressedBody p(2 * kToolRadius, poisson, GetParam());
     SharedFactorSolver solver = solver_of(p);
     Displacement u = p.rest();
     p.press(0);
@@ -95,8 +97,8 @@ TEST(SharedFactorSolver, FindsNearlyIncompressibleEquilibriaInFewIterations) {
 }
 
 /// As after an increment that Newton's method had to find.
-TEST(SharedFactorSolver, GoesOnFromAnEquilibriumOfAnotherSolver) {
-  PressedBody p(2 * kToolRadius, 0.4999);
+TEST_P(NearlyIncompressible, GoesOnFromAnEquilibriumOfAnotherSolver) {
+  PressedBody p(2 * kToolRadius, 0.4999, GetParam());
   SharedFactorSolver solver = solver_of(p);
   p.press(0.001);
   Displacement u = by_newton(p, p.rest());
@@ -105,6 +107,9 @@ TEST(SharedFactorSolver, GoesOnFromAnEquilibriumOfAnotherSolver) {
   ASSERT_TRUE(solver.solve(p.contact, {.tolerance = kTolerance}, u).converged);
   expect_same_state(p, u, by_newton(p, u));
 }
+
+INSTANTIATE_TEST_SUITE_P(Pressures, NearlyIncompressible,
+                         testing::Values(Dilatation::Mean, Dilatation::Nodal));
 
 /// Contact beyond the window is stiffness that K0 does not have: the solver may fail, with a
 /// reason, and Newton's method takes over as in a campaign. What it finds is the equilibrium all
