@@ -337,6 +337,21 @@ TEST(RefineUnderTool, OnSpringsAndUnderWeightIsTheRefinedBody) {
   }
 }
 
+// The elements of the case carry a weight under which those of half the size buckle.
+TEST(RefineUnderTool, FailsWithAReasonWhereSmallerElementsBuckleUnderTheWeight) {
+  const Body body = block_on_springs(4, 4e5);
+  CampaignSettings settings = pressed_by(0.027, 0.003);
+  settings.gravity = {{0, 33.2, -83}, 1000};
+  settings.indentation.increments = 2;
+  settings.indentation.lateral_depths.clear();
+  EXPECT_EQ(press(body, settings, 0).status, SiteStatus::Complete);
+  const SiteCurves refined = press(body, settings, 1);
+  EXPECT_EQ(refined.status, SiteStatus::Failed);
+  EXPECT_THAT(refined.reason, HasSubstr("under its weight, before the touch: "));
+  ASSERT_EQ(refined.paths.size(), 1u);
+  EXPECT_EQ(refined.paths[0].samples.size(), 1u);
+}
+
 TEST(RefineUnderTool, ByContactTheWorkOnABodyThatSagsIsItsEnergy) {
   CampaignSettings settings = pressed_by(0.005, 0.0012);
   settings.gravity = {{0, 15, -40}, 1000};
