@@ -99,7 +99,8 @@ class SolidModel {
   void turned_stiffness(const Displacement& u, std::vector<double>& values) const;
 
   /// Multipliers of 0; none for the displacement element, which has no pressures, and for linear
-  /// elements, whose pressures alternate: multipliers would take more steps to follow.
+  /// elements, whose pressures alternate: the multipliers would leave twice the wanted error of the
+  /// force.
   DilatationMultipliers multipliers() const;
   /// The step of the method of multipliers at `u`.
   void update(const Displacement& u, DilatationMultipliers& multipliers) const;
