@@ -14,6 +14,7 @@
 
 #include "app/pipeline/events.hpp"
 #include "app/wrapped_text.hpp"
+#include "format/number_text.hpp"
 
 namespace palpate::app {
 namespace {
@@ -125,17 +126,37 @@ std::string duration_text(double seconds) {
   return fmt::format("{} h {:02} min", whole / 3600, whole % 3600 / 60);
 }
 
+bool ProgressDisplay::is_due(Clock::time_point now) const {
+  const double since_last = std::chrono::duration<double>(now - last_).count();
+  return since_last >= (output_.terminal ? kSecondsBetweenBars : kSecondsBetweenLines);
+}
+
+void ProgressDisplay::show(const PreloadStep& p) {
+  const Clock::time_point now = Clock::now();
+  if (!is_due(now)) return;
+  last_ = now;
+  const std::string steps = count_text(p.steps, "step");
+  const std::string text =
+      p.shapes > 0 ? fmt::format("{}: shape without weight, {} tried, {}", label_,
+                                 count_text(p.shapes, "shape"), steps)
+                   : fmt::format("{}: equilibrium under the weight, {}, {:.3g} % of it carried",
+                                 label_, steps, 100 * p.carried);
+  if (!output_.terminal) return output_.line(text);
+  const std::string cut = text.substr(
+      0, output_.columns > 0 ? static_cast<std::size_t>(output_.columns - 1) : std::string::npos);
+  output_.write(fmt::format("\r{}\x1b[K", cut));
+  bar_open_ = true;
+}
+
 void ProgressDisplay::show(const Progress& p) {
   const Clock::time_point now = Clock::now();
   const double elapsed = std::chrono::duration<double>(now - start_).count();
   const bool starts = p.done <= p.known && p.running == 0;
   if (starts) return remaining_.begin(elapsed);
   remaining_.update(elapsed, p.done - p.known, p.total - p.known, p.sites);
-  const double since_last = std::chrono::duration<double>(now - last_).count();
-  const double interval = output_.terminal ? kSecondsBetweenBars : kSecondsBetweenLines;
   const bool finished = p.done >= p.total;
   if (!output_.terminal && p.between_sites) return;
-  if (!finished && since_last < interval) return;
+  if (!finished && !is_due(now)) return;
   last_ = now;
   const std::optional<double> left = remaining_.left(elapsed);
   const std::string time = finished ? duration_text(elapsed)

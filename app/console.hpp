@@ -13,6 +13,7 @@
 
 namespace palpate::app {
 
+struct PreloadStep;
 struct Progress;
 
 /// Where text goes.
@@ -88,11 +89,16 @@ class ProgressDisplay {
       : label_(std::move(label)), output_(std::move(output)), remaining_(sharing) {}
   /// The first progress of a campaign, before its first site, starts the clock of the estimate.
   void show(const Progress& progress);
+  /// What stands before the first site.
+  void show(const PreloadStep& step);
   /// Ends the line of a bar, before other text is printed.
   void interrupt();
 
  private:
   using Clock = std::chrono::steady_clock;
+
+  /// Whether the last progress was shown long enough ago.
+  bool is_due(Clock::time_point now) const;
 
   std::string label_;
   TextOutput output_;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 
+#include "fem/campaign/campaign_cache.hpp"
 #include "format/error.hpp"
 #include "format/number_text.hpp"
 
@@ -128,7 +129,7 @@ class BodyModel : public PressModel {
   const InverseSettings& settings_;
   std::vector<SetTool> tools_;
   bool first_ = true;
-  fem::FactorCache kept_;
+  fem::CampaignCache kept_;
 };
 
 void check_tool(const Curves& measured, const InverseSettings& settings) {

@@ -144,6 +144,9 @@ Curves solve_direct(const Workspace& space, const Body& body, fem::CampaignSetti
     keep_fields_in(direct_fields(space), settings.indentation.increments, settings);
   settings.field_friction = space.c.certify.friction;
   ProgressDisplay display("direct", console().out);
+  settings.preloading = [&](const fem::PreloadProgress& p) {
+    display.show(PreloadStep{p.steps, p.carried, p.shapes});
+  };
   settings.progress = [&](const fem::CampaignProgress& p) {
     display.show({p.done, p.failed, p.running, p.total, p.known, p.sites, false});
   };

@@ -12,7 +12,7 @@
 
 #include "app/pipeline/campaign_sites.hpp"
 #include "app/pipeline/settings.hpp"
-#include "fem/factor/rest_factor.hpp"
+#include "fem/campaign/campaign_cache.hpp"
 #include "fitting/fidelity/fidelity.hpp"
 #include "fitting/fidelity/skin.hpp"
 #include "fitting/measurement/nearest_rank.hpp"
@@ -58,7 +58,7 @@ class TemporaryFile {
 class HoldOut {
  public:
   HoldOut(const Workspace& space, const Body& body, const Library& library,
-          fem::FactorCache& factors, fem::CampaignSettings settings, const std::string& key)
+          fem::CampaignCache& cache, fem::CampaignSettings settings, const std::string& key)
       : space_(space) {
     points_ = fidelity::draw_points(library, space.c.sampling.hold_out_points, 0, kSeed);
     fidelity::find_skin(body, points_);
@@ -73,7 +73,7 @@ class HoldOut {
     settings.progress = nullptr;
     settings.advanced = nullptr;
     settings.fields = nullptr;
-    direct_ = fem::run_campaign(body, settings, report_, &factors);
+    direct_ = fem::run_campaign(body, settings, report_, &cache);
   }
 
   const fem::CampaignReport& report() const { return report_; }
@@ -204,6 +204,7 @@ std::string words(SamplingEnd end) {
 
 AdaptiveCampaign sample_adaptively(const Workspace& space, const Body& body,
                                    fem::CampaignSettings settings, const std::string& key,
+                                   fem::CampaignCache& cache,
                                    const std::function<void(const SamplingRound&)>& tell) {
   const SamplingSection& sampling = space.c.sampling;
   const std::size_t of_sites = sites_of(body).size();
@@ -213,14 +214,13 @@ AdaptiveCampaign sample_adaptively(const Workspace& space, const Body& body,
   std::vector<SamplingRound> rounds;
   settings.sites = fitting::spread_sites(body, sampling.initial_spacing);
   const auto start = std::chrono::steady_clock::now();
-  fem::FactorCache factors;
   for (bool open = true; open;) {
     settings.known = known.among(settings.sites);
     result.report = {};
-    result.curves = fem::run_campaign(body, settings, result.report, &factors);
+    result.curves = fem::run_campaign(body, settings, result.report, &cache);
     known.add(result.curves.sites);
     const Library library = fitting::fit(body, result.curves, fit_settings(space));
-    if (!hold_out) hold_out.emplace(space, body, library, factors, settings, key);
+    if (!hold_out) hold_out.emplace(space, body, library, cache, settings, key);
     rounds.push_back({static_cast<int>(rounds.size()) + 1,
                       settings.sites.size(),
                       of_sites,

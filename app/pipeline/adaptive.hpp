@@ -39,6 +39,7 @@ struct AdaptiveCampaign {
 /// @throws as fem::run_campaign and fitting::fit.
 AdaptiveCampaign sample_adaptively(const Workspace& space, const Body& body,
                                    fem::CampaignSettings settings, const std::string& key,
+                                   fem::CampaignCache& cache,
                                    const std::function<void(const SamplingRound&)>& tell);
 
 /// Removes the journal of the hold-out points, once the curves of the campaign are written.

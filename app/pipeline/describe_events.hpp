@@ -61,6 +61,14 @@ void describe(V& v, const CampaignStarted& e) {
 }
 
 template <class V>
+void describe(V& v, const PreloadStep& e) {
+  v.event("preload", "follows each step towards the equilibrium under the weight");
+  v.field("steps", e.steps, "steps of Newton's method so far");
+  v.field("carried", e.carried, "part of the weight, 0 .. 1, of the last equilibrium");
+  v.field("shapes", e.shapes, "shapes without weight that were tried, with `shape = \"loaded\"`");
+}
+
+template <class V>
 void describe(V& v, const SiteFinished& e) {
   v.event("site", "a site is finished");
   v.field("vertex", e.vertex, "response vertex");

@@ -55,6 +55,13 @@ struct CampaignStarted {
   SiteSharing sharing = {};  ///< of its sites
 };
 
+/// A step towards the equilibrium under the weight, which stands before the sites.
+struct PreloadStep {
+  int steps = 0;       ///< of Newton's method, so far
+  double carried = 0;  ///< part of the weight, 0 .. 1, of the last equilibrium
+  int shapes = 0;      ///< that were tried as the shape without weight
+};
+
 struct SiteFinished {
   std::int32_t vertex = -1;
   SiteStatus status = SiteStatus::Complete;
@@ -211,11 +218,11 @@ struct FileWritten {
   std::filesystem::path file;
 };
 
-using Event =
-    std::variant<StageStarted, StageUpToDate, LogLine, Warning, MeshFinished, CampaignStarted,
-                 SiteFinished, Progress, FinerMeshProgress, SamplingRound, SamplingFinished,
-                 CampaignFinished, MergeFinished, FitFinished, Certified, StiffnessAtRate, Softened,
-                 SteepestForce, ConvergenceLevel, ConvergenceOfForce, Estimate, FileWritten>;
+using Event = std::variant<StageStarted, StageUpToDate, LogLine, Warning, MeshFinished,
+                           CampaignStarted, PreloadStep, SiteFinished, Progress, FinerMeshProgress,
+                           SamplingRound, SamplingFinished, CampaignFinished, MergeFinished,
+                           FitFinished, Certified, StiffnessAtRate, Softened, SteepestForce,
+                           ConvergenceLevel, ConvergenceOfForce, Estimate, FileWritten>;
 
 /// Receives the events of a stage, from one thread at a time.
 using EventSink = std::function<void(const Event&)>;

@@ -10,6 +10,7 @@
 #include "app/pipeline/settings.hpp"
 #include "app/pipeline/stage_input.hpp"
 #include "app/pipeline/stages.hpp"
+#include "fem/campaign/finer_mesh.hpp"
 #include "fitting/response/mesh_error.hpp"
 #include "format/body.hpp"
 #include "format/number_text.hpp"
@@ -114,7 +115,7 @@ SiteCounts run_merge(const Workspace& space, std::vector<fs::path> parts, const 
   }
   merged.body_sha256 = body_sha256;
   merged.sites = collection.complete_set(body, space.out);
-  fitting::bound_mesh_errors(merged);
+  fitting::bound_mesh_errors(merged, fem::at_sharp_edges(body, merged.tool, merged.depth));
   facts.emplace_back("cpu_seconds", fmt::format("{:.3f}", cpu_seconds(merged.sites)));
   append(merged.provenance, body.provenance,
          make_stage_step(space, Stage::Precompute, std::move(facts)));

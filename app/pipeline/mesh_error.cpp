@@ -42,7 +42,7 @@ std::vector<std::int32_t> candidates(const Workspace& space, const Body& body,
 
 std::vector<std::pair<std::string, std::string>> estimate_mesh_error(
     const Workspace& space, const Body& body, const fem::CampaignSettings& settings, Curves& curves,
-    fem::FactorCache* cache, const EventSink& emit) {
+    fem::CampaignCache* cache, const EventSink& emit) {
   if (settings.mesh_error_sites == 0) return {};
   const std::string obstacle = fem::obstacle_to_refinement(settings);
   if (!obstacle.empty()) {
@@ -52,9 +52,7 @@ std::vector<std::pair<std::string, std::string>> estimate_mesh_error(
                      obstacle});
     return {};
   }
-  const auto all = candidates(space, body, curves);
-  const auto chosen =
-      fem::sites_far_apart(body, all, fem::count_on_finer_mesh(settings, all.size()));
+  const auto chosen = fem::sites_on_finer_mesh(body, settings, candidates(space, body, curves));
   fem::CampaignReport report;
   try {
     fem::press_on_finer_mesh(body, with_progress_to(emit, settings), chosen, curves, report, cache);
@@ -63,7 +61,7 @@ std::vector<std::pair<std::string, std::string>> estimate_mesh_error(
                  fmt::format("the error of the mesh stays unknown: {}", error.what())});
     return {};
   }
-  fitting::bound_mesh_errors(curves);
+  fitting::bound_mesh_errors(curves, fem::at_sharp_edges(body, curves.tool, curves.depth));
   if (const std::string text = mesh_error_text(curves); !text.empty())
     emit(LogLine{"precompute", text});
   return {{"sites_on_finer_mesh", std::to_string(chosen.size())},

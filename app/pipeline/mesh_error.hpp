@@ -17,7 +17,7 @@ namespace palpate::app {
 /// @return facts for the provenance.
 std::vector<std::pair<std::string, std::string>> estimate_mesh_error(
     const Workspace& space, const Body& body, const fem::CampaignSettings& settings, Curves& curves,
-    fem::FactorCache* cache, const EventSink& emit);
+    fem::CampaignCache* cache, const EventSink& emit);
 
 /// One sentence on the error of the mesh; empty where it is unknown.
 std::string mesh_error_text(const Curves& curves);

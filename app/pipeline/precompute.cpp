@@ -13,8 +13,8 @@
 #include "app/pipeline/settings.hpp"
 #include "app/pipeline/stage_input.hpp"
 #include "app/pipeline/stages.hpp"
+#include "fem/campaign/campaign_cache.hpp"
 #include "fem/factor/cholesky.hpp"
-#include "fem/factor/rest_factor.hpp"
 #include "format/body.hpp"
 #include "format/sha256.hpp"
 #include "format/site_journal.hpp"
@@ -100,16 +100,16 @@ struct Campaign {
 };
 
 Campaign press_all(const Body& body, const fem::CampaignSettings& settings,
-                   fem::FactorCache& factors) {
+                   fem::CampaignCache& cache) {
   Campaign campaign;
-  campaign.curves = fem::run_campaign(body, settings, campaign.report, &factors);
+  campaign.curves = fem::run_campaign(body, settings, campaign.report, &cache);
   return campaign;
 }
 
 Campaign press_adaptively(const Workspace& space, const Body& body,
                           const fem::CampaignSettings& settings, const std::string& key,
-                          const EventSink& emit) {
-  AdaptiveCampaign adaptive = sample_adaptively(space, body, settings, key,
+                          fem::CampaignCache& cache, const EventSink& emit) {
+  AdaptiveCampaign adaptive = sample_adaptively(space, body, settings, key, cache,
                                                 [&](const SamplingRound& round) { emit(round); });
   emit(SamplingFinished{adaptive.end == SamplingEnd::ToleranceMet, words(adaptive.end)});
   return {std::move(adaptive.curves), std::move(adaptive.report), std::move(adaptive.facts)};
@@ -146,6 +146,9 @@ SiteCounts run_precompute(const Workspace& space, const EventSink& emit) {
     journal.append(site);
     emit(finished(site));
   };
+  settings.preloading = [&](const fem::PreloadProgress& p) {
+    emit(PreloadStep{p.steps, p.carried, p.shapes});
+  };
   settings.progress = [&](const fem::CampaignProgress& p) {
     emit(Progress{p.done, p.failed, p.running, p.total, p.known, p.sites, false});
   };
@@ -153,14 +156,14 @@ SiteCounts run_precompute(const Workspace& space, const EventSink& emit) {
     emit(Progress{p.done, p.failed, p.running, p.total, p.known, p.sites, true});
   };
 
-  fem::FactorCache factors;
+  fem::CampaignCache cache;
   auto [curves, report, facts] = is_adaptive(space)
-                                     ? press_adaptively(space, body, settings, key, emit)
-                                     : press_all(body, settings, factors);
+                                     ? press_adaptively(space, body, settings, key, cache, emit)
+                                     : press_all(body, settings, cache);
   curves.body_sha256 = body_sha256;
   const auto general = facts_of(space, report, settings.known.size());
   facts.insert(facts.begin(), general.begin(), general.end());
-  const auto of_mesh = estimate_mesh_error(space, body, settings, curves, &factors, emit);
+  const auto of_mesh = estimate_mesh_error(space, body, settings, curves, &cache, emit);
   facts.insert(facts.end(), of_mesh.begin(), of_mesh.end());
   append(curves.provenance, body.provenance, make_stage_step(space, Stage::Precompute, facts));
   write_curves(space.precomputed(), curves);

@@ -80,6 +80,10 @@ void TextSink::print(const CampaignStarted& e) {
         e.dropped_bytes);
 }
 
+void TextSink::print(const PreloadStep& e) {
+  if (console_.verbosity != Verbosity::Quiet) progress_.show(e);
+}
+
 void TextSink::print(const SiteFinished& e) {
   if (console_.verbosity == Verbosity::Verbose)
     line("  site {}: {}, {:.1f} s CPU time{}", e.vertex, words(e.status), e.cpu_seconds,

@@ -20,6 +20,7 @@ class TextSink {
   void print(const Warning& e);
   void print(const MeshFinished& e);
   void print(const CampaignStarted& e);
+  void print(const PreloadStep& e);
   void print(const SiteFinished& e);
   void print(const Progress& e);
   void print(const FinerMeshProgress& e);

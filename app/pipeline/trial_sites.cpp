@@ -27,8 +27,8 @@ struct OutOfPatience {};
 /// How many sites take as long as those of the shard that are pressed on a finer mesh.
 double sites_worth_of_finer_mesh(const Workspace& space, const Body& body,
                                  const fem::CampaignSettings& settings) {
-  return kFinerOverOthers * fem::count_on_finer_mesh(settings, sites_of(body).size()) /
-         space.shard.count;
+  const std::size_t sites = fem::sites_on_finer_mesh(body, settings, sites_of(body)).size();
+  return kFinerOverOthers * static_cast<double>(sites) / space.shard.count;
 }
 
 /// The boundary of the body with the response vertices as its first points.

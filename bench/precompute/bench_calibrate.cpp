@@ -19,6 +19,7 @@
 
 #include "app/blas_kernel.hpp"
 #include "fem/campaign/campaign.hpp"
+#include "fem/campaign/campaign_cache.hpp"
 #include "fem/campaign/sensitivity.hpp"
 #include "tests/support/block_body.hpp"
 
@@ -98,7 +99,7 @@ struct Problem {
     changed.materials = settings_of(body, c, 0).materials;
     return changed;
   }
-  Sites adjoint(const CampaignSettings& s, FactorCache& cache) const {
+  Sites adjoint(const CampaignSettings& s, CampaignCache& cache) const {
     return run_sensitivity(body, s, depths, constants, {}, &cache);
   }
 };
@@ -171,7 +172,7 @@ void run(int cells, std::size_t sites) {
   const double campaign = seconds([&] { run_campaign(problem.body, problem.settings, report); });
   std::printf("%-52s %8.2f s   1.00\n", "campaign", campaign);
 
-  FactorCache cache;
+  CampaignCache cache;
   Sites adjoint;
   const double by_adjoint = seconds([&] { adjoint = problem.adjoint(problem.settings, cache); });
   print_time("forces and derivatives, adjoint", by_adjoint, campaign);
@@ -187,10 +188,10 @@ void run(int cells, std::size_t sites) {
 
   const auto again = [&](const char* what, const Constants& c) {
     const CampaignSettings s = problem.with(problem.settings, c);
-    const int before = cache.factorizations();
+    const int before = cache.factors.factorizations();
     print_time(what, seconds([&] { problem.adjoint(s, cache); }), campaign);
-    std::printf("  (%d factorization%s)\n", cache.factorizations() - before,
-                cache.factorizations() - before == 1 ? "" : "s");
+    std::printf("  (%d factorization%s)\n", cache.factors.factorizations() - before,
+                cache.factors.factorizations() - before == 1 ? "" : "s");
   };
   const Constants& middle = problem.middle;
   again("adjoint again, all moduli half as large again", {1.5 * middle.top, 1.5 * middle.base});

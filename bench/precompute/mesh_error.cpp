@@ -308,20 +308,18 @@ std::vector<SiteEstimate> estimates(const Curves& curves, const Curves& exact) {
   return found;
 }
 
+/// `chosen`: the sites that are pressed on the finer mesh too.
 void print_bound(const std::string& name, const Body& body, const CampaignSettings& s,
-                 int on_finer) {
+                 const std::vector<std::int32_t>& chosen) {
   fem::CampaignReport report, on_finer_mesh;
   Curves curves = fem::run_campaign(body, s, report);
-  std::vector<std::int32_t> all;
-  for (const SiteCurves& site : curves.sites) all.push_back(site.vertex);
-  const auto chosen = fem::sites_far_apart(body, all, on_finer);
   fem::press_on_finer_mesh(body, s, chosen, curves, on_finer_mesh);
-  fitting::bound_mesh_errors(curves);
+  fitting::bound_mesh_errors(curves, fem::at_sharp_edges(body, curves.tool, curves.depth));
   const Curves exact = forces(body, by_contact(s, kFinest)).curves;
   const std::vector<SiteEstimate> pressed = estimates(curves, exact);
-  const auto sites = static_cast<double>(all.size());
+  const auto sites = static_cast<double>(curves.sites.size());
   std::printf("%s: %zu sites, %.2f s a site; %zu on a finer mesh, %.2f s a site; confidence %.2f\n",
-              name.c_str(), all.size(), report.cpu_seconds / sites, chosen.size(),
+              name.c_str(), curves.sites.size(), report.cpu_seconds / sites, chosen.size(),
               on_finer_mesh.cpu_seconds / static_cast<double>(chosen.size()),
               curves.mesh_error_confidence);
   for (const SiteEstimate& site : pressed)
@@ -373,10 +371,10 @@ void against_truth() {
   s.indentation.refine_under_tool = IndentationSettings::kByContact;
   const Body block = uneven_block(0.004);
   s.sites = sites_near(block, {}, 0.0081, 8);
-  print_bound("block, elements of 4 mm", block, s, 4);
+  print_bound("block, elements of 4 mm", block, s, fem::sites_far_apart(block, s.sites, 4));
   const Body cap = cap_with_sites(0.0048, 0.45);
   s.sites = sites_near(cap, {}, 1, 8);
-  print_bound("ball, elements of 4.8 mm", cap, s, 4);
+  print_bound("ball, elements of 4.8 mm", cap, s, fem::sites_far_apart(cap, s.sites, 4));
 }
 
 /// Every eighth site of a case, on the body that `palpate mesh` made; with the elements of the
@@ -388,9 +386,11 @@ void of_case(const char* file, const char* body_file) {
   s.indentation.lateral_depths.clear();
   std::vector<std::int32_t> sites = sites_near(body, {}, kInfinity, body.response.node.size());
   for (std::size_t i = 0; i < sites.size(); i += 8) s.sites.push_back(sites[i]);
+  s.mesh_error_sites = 4;
   for (const int refined : {0, IndentationSettings::kByContact}) {
     s.indentation.refine_under_tool = refined;
-    print_bound(space.c.name + (refined == 0 ? ", as it is" : ", by the contact"), body, s, 4);
+    print_bound(space.c.name + (refined == 0 ? ", as it is" : ", by the contact"), body, s,
+                fem::sites_on_finer_mesh(body, s, s.sites));
   }
 }
 

@@ -178,16 +178,14 @@ void add_supports(const CampaignContext& context, const CampaignSettings& settin
 }  // namespace
 
 Curves run_campaign(const Body& body, const CampaignSettings& settings, CampaignReport& report,
-                    FactorCache* cache) {
+                    CampaignCache* cache) {
   const auto start = std::chrono::steady_clock::now();
   const auto elapsed = [&] {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   };
   check_indentation(settings.indentation);
   Curves curves;
-  const ToolGeometry& tool = settings.indentation.tool;
-  curves.tool = {name_of(tool.shape), tool.radius, name_of(settings.indentation.friction),
-                 tool.edge_radius, tool.length};
+  curves.tool = description_of(settings.indentation);
   curves.depth = settings.indentation.depth;
   curves.lateral_travel = settings.indentation.lateral_travel;
   for (const auto vertex : numbers_of_results(body, settings)) {

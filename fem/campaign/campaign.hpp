@@ -22,19 +22,18 @@ struct CampaignReport {
   std::vector<std::pair<std::string, std::string>> facts;  ///< BLAS kernel, factor size, versions
 };
 
-class FactorCache;
+struct CampaignCache;
 
 /// Presses every site. The results are in ascending order of vertex, whatever the number of
 /// threads. A site whose solve failed is data, with its status, reason and partial curve.
-/// @param cache  the factor of earlier campaigns on this body; on a large mesh a factorization
-/// takes
-///   as long as dozens of sites. May be null. With the same laws the bits are the same.
+/// @param cache  what earlier campaigns on this body have computed; on a large mesh a factorization
+///   takes as long as dozens of sites. May be null. With the same laws the bits are the same.
 /// @throws Error(Geometry) when the body has no equilibrium under its weight.
 /// @throws Error(Configuration) for constants out of range (named, with value and range), a region
 ///   without a law, a law without a region, a lateral depth that exceeds the depth, a vertex that
 ///   is not a site.
 Curves run_campaign(const Body& body, const CampaignSettings& settings, CampaignReport& report,
-                    FactorCache* cache = nullptr);
+                    CampaignCache* cache = nullptr);
 
 /// Displacement of the nodes of the body (corner nodes, same order as Body::nodes) from their given
 /// positions for one site at

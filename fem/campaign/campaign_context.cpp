@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "fem/campaign/campaign_cache.hpp"
 #include "fem/campaign/parallel_sites.hpp"
 #include "fem/campaign/region_laws.hpp"
 #include "fem/mesh/to_eigen.hpp"
@@ -60,45 +61,61 @@ std::string obstacle_to_refinement(const CampaignSettings& settings) {
 
 /// The model and its equilibrium before the touch.
 struct CampaignContext::Preloaded {
-  std::shared_ptr<const UnloadedBody> unloaded;
   SolidModel model;
   std::vector<int> permutation;
-  Displacement rest;
+  Preload preload;
 };
+
+namespace {
+
+Preload computed_preload(const Body& body, const CampaignSettings& settings, const Gravity& gravity,
+                         const std::vector<Law>& laws, const SolidModel& model,
+                         const std::vector<int>& permutation) {
+  const PreloadOptions options{{settings.memory, settings.threads}, settings.preloading};
+  if (gravity.acts() && gravity.shape == GivenShape::Loaded) {
+    auto found = std::make_shared<const UnloadedBody>(
+        find_unloaded_body(body, laws, settings.dilatation, gravity, permutation, options));
+    return {found, found->u};
+  }
+  return {nullptr, equilibrium_under_weight(model, permutation, body.name, options)};
+}
+
+}  // namespace
 
 CampaignContext::Preloaded CampaignContext::preloaded(const Body& body,
                                                       const CampaignSettings& settings,
-                                                      Engine engine, FactorCache* cache) {
+                                                      Engine engine, CampaignCache* cache) {
   check_refinement(body, settings, engine);
   const std::vector<Law> laws = laws_of_regions(body, settings.materials);
   const Gravity gravity = gravity_on(body, settings);
   SolidModel model(body, laws, settings.dilatation, gravity);
-  std::vector<int> permutation =
-      cache != nullptr ? cache->permutation(model.pattern()) : nested_dissection(model.pattern());
-  if (gravity.acts() && gravity.shape == GivenShape::Loaded) {
-    auto found = std::make_shared<const UnloadedBody>(
-        find_unloaded_body(body, laws, settings.dilatation, gravity, permutation));
-    return {found, found->model, std::move(permutation), found->u};
-  }
-  Displacement rest = equilibrium_under_weight(model, permutation, body.name);
-  return {nullptr, std::move(model), std::move(permutation), std::move(rest)};
+  std::vector<int> permutation = cache != nullptr ? cache->factors.permutation(model.pattern())
+                                                  : nested_dissection(model.pattern());
+  const Preload* known = cache != nullptr ? cache->preloads.find(settings) : nullptr;
+  Preload preload = known != nullptr
+                        ? *known
+                        : computed_preload(body, settings, gravity, laws, model, permutation);
+  if (cache != nullptr && known == nullptr) cache->preloads.keep(settings, preload);
+  const auto unloaded = preload.unloaded;
+  return {unloaded ? unloaded->model : std::move(model), std::move(permutation),
+          std::move(preload)};
 }
 
 CampaignContext::CampaignContext(const Body& b, const CampaignSettings& settings, Engine e,
-                                 FactorCache* cache)
+                                 CampaignCache* cache)
     : CampaignContext(b, settings, e, cache, preloaded(b, settings, e, cache)) {}
 
 CampaignContext::CampaignContext(const Body& b, const CampaignSettings& settings, Engine e,
-                                 FactorCache* cache, Preloaded&& start)
+                                 CampaignCache* cache, Preloaded&& start)
     : body(b),
-      unloaded(std::move(start.unloaded)),
+      unloaded(std::move(start.preload.unloaded)),
       points(settings.points),
       indentation(settings.indentation),
       relaxation(relaxation_of_regions(b, settings.materials)),
       engine(e),
       model(std::move(start.model)),
       permutation(std::move(start.permutation)),
-      rest(std::move(start.rest)),
+      rest(std::move(start.preload.rest)),
       at_rest(model.energy(rest)),
       round_off(settings.gravity.acts() ? rounding_of_rest(model, rest) : 0) {
   use_one_thread_per_site();
@@ -110,9 +127,10 @@ CampaignContext::CampaignContext(const Body& b, const CampaignSettings& settings
   model.take_pressures(rest, multipliers);
   model.stiffness(rest, K, &multipliers);
   const FactorResources resources{settings.memory, settings.threads};
-  rest_factor = cache != nullptr ? cache->factor_of(model.pattern(), K, body.name, resources)
-                                 : std::make_shared<RestFactor>(model.pattern(), permutation, K,
-                                                                body.name, resources);
+  rest_factor =
+      cache != nullptr
+          ? cache->factors.factor_of(model.pattern(), K, body.name, resources)
+          : std::make_shared<RestFactor>(model.pattern(), permutation, K, body.name, resources);
   own_factors.release(places_for_own_factors(*rest_factor, settings.threads, settings.memory));
 }
 

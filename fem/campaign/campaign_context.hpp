@@ -18,6 +18,8 @@
 
 namespace palpate::fem {
 
+struct CampaignCache;
+
 /// The solver of the equilibria.
 enum class Engine {
   Direct,       ///< Newton with a factorization of the whole body per iteration: the reference
@@ -29,7 +31,7 @@ enum class Engine {
 struct CampaignContext {
   /// `cache`: shared with earlier campaigns on the body; may be null.
   CampaignContext(const Body& body, const CampaignSettings& settings, Engine engine,
-                  FactorCache* cache = nullptr);
+                  CampaignCache* cache = nullptr);
 
   /// The point and direction of a response vertex; of a point of the settings, by its index, when
   /// there are any.
@@ -61,9 +63,9 @@ struct CampaignContext {
  private:
   struct Preloaded;
   static Preloaded preloaded(const Body& body, const CampaignSettings& settings, Engine engine,
-                             FactorCache* cache);
+                             CampaignCache* cache);
   CampaignContext(const Body& body, const CampaignSettings& settings, Engine engine,
-                  FactorCache* cache, Preloaded&& start);
+                  CampaignCache* cache, Preloaded&& start);
 };
 
 /// A place for a factor that a site has of its own. Waits until one is free, without keeping a

@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <utility>
 
 #include "fem/campaign/campaign_context.hpp"
+#include "fem/mesh/sharp_edges.hpp"
 #include "format/to_index.hpp"
 
 namespace palpate::fem {
@@ -85,15 +87,34 @@ std::vector<std::int32_t> sites_far_apart(const Body& body, const std::vector<st
   return chosen;
 }
 
-int count_on_finer_mesh(const CampaignSettings& settings, std::size_t sites) {
-  if (settings.mesh_error_sites == 0 || !obstacle_to_refinement(settings).empty()) return 0;
-  return std::min({settings.mesh_error_sites, std::max(2, static_cast<int>(sites / 10)),
-                   static_cast<int>(sites)});
+std::vector<bool> at_sharp_edges(const Body& body, const ToolDescription& tool, double depth) {
+  const bool sphere = tool.shape == name_of(ToolShape::Sphere);
+  const double reach = sphere ? std::min(tool.radius, std::sqrt(2 * tool.radius * depth))
+                              : tool.radius + 0.5 * tool.length;
+  return near_sharp_edges(body, reach);
+}
+
+std::vector<std::int32_t> sites_on_finer_mesh(const Body& body, const CampaignSettings& settings,
+                                              const std::vector<std::int32_t>& sites) {
+  if (settings.mesh_error_sites == 0 || !obstacle_to_refinement(settings).empty()) return {};
+  const std::vector<bool> at_edge =
+      at_sharp_edges(body, description_of(settings.indentation), settings.indentation.depth);
+  std::vector<std::int32_t> chosen;
+  for (const bool edge : {false, true}) {
+    std::vector<std::int32_t> alike;
+    std::copy_if(sites.begin(), sites.end(), std::back_inserter(alike),
+                 [&](std::int32_t vertex) { return at_edge[to_index(vertex)] == edge; });
+    const int few = std::max(3, static_cast<int>(alike.size() / 10));
+    const auto some = sites_far_apart(body, alike, std::min(settings.mesh_error_sites, few));
+    chosen.insert(chosen.end(), some.begin(), some.end());
+  }
+  std::sort(chosen.begin(), chosen.end());
+  return chosen;
 }
 
 void press_on_finer_mesh(const Body& body, const CampaignSettings& settings,
                          const std::vector<std::int32_t>& chosen, Curves& curves,
-                         CampaignReport& report, FactorCache* cache) {
+                         CampaignReport& report, CampaignCache* cache) {
   std::vector<std::int32_t> here;
   for (const SiteCurves& site : curves.sites)
     if (site.status != SiteStatus::Failed &&

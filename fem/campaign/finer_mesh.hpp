@@ -19,10 +19,16 @@ namespace palpate::fem {
 std::vector<std::int32_t> sites_far_apart(const Body& body, const std::vector<std::int32_t>& sites,
                                           int count);
 
-/// How many of `sites` sites are pressed on a finer mesh too, by
-/// CampaignSettings::mesh_error_sites: where there are few, every tenth, but two. 0 where elements
-/// cannot be refined.
-int count_on_finer_mesh(const CampaignSettings& settings, std::size_t sites);
+/// Response vertices where the contact of the deepest press reaches a sharp edge of the body: the
+/// mesh leaves a larger error there. The contact is taken as a circle, that of a sphere to sqrt(2 R
+/// d) or its radius.
+std::vector<bool> at_sharp_edges(const Body& body, const ToolDescription& tool, double depth);
+
+/// The sites among `sites` that are pressed on a finer mesh too: of those at sharp edges and of the
+/// others each CampaignSettings::mesh_error_sites, far apart; where there are few every tenth, but
+/// three. None where elements cannot be refined. Ascending.
+std::vector<std::int32_t> sites_on_finer_mesh(const Body& body, const CampaignSettings& settings,
+                                              const std::vector<std::int32_t>& sites);
 
 /// Presses those of the `chosen` sites that `curves` has with IndentationSettings::divide_once_more
 /// along all their paths, and sets mesh_difference of their samples. With F the force along the
@@ -34,6 +40,6 @@ int count_on_finer_mesh(const CampaignSettings& settings, std::size_t sites);
 /// @throws as run_campaign, among others where obstacle_to_refinement names an obstacle.
 void press_on_finer_mesh(const Body& body, const CampaignSettings& settings,
                          const std::vector<std::int32_t>& chosen, Curves& curves,
-                         CampaignReport& report, FactorCache* cache = nullptr);
+                         CampaignReport& report, CampaignCache* cache = nullptr);
 
 }  // namespace palpate::fem

@@ -314,7 +314,7 @@ CampaignSettings settings_of_paths(const CampaignSettings& settings,
 /// All sites, differentiated by the adjoint; without constants only pressed.
 std::vector<SiteSensitivity> pressed_sites(const Body& body, const CampaignSettings& normal,
                                            const std::vector<RegionConstant>& constants,
-                                           const SitePlans& lateral, FactorCache* cache) {
+                                           const SitePlans& lateral, CampaignCache* cache) {
   const std::vector<LateralPlan> none;
   std::vector<SiteSensitivity> results(normal.sites.size());
   const CampaignContext context(body, normal, Engine::SharedFactor, cache);
@@ -349,7 +349,7 @@ void add_differences(const std::vector<ForceSensitivity>& low,
 /// force tolerance a hundred times smaller than the force that is differentiated.
 std::vector<SiteSensitivity> by_differences(const Body& body, const CampaignSettings& normal,
                                             const std::vector<RegionConstant>& constants,
-                                            const SitePlans& lateral, FactorCache* cache) {
+                                            const SitePlans& lateral, CampaignCache* cache) {
   constexpr double kStep = 1e-2;
   std::vector<SiteSensitivity> results = pressed_sites(body, normal, {}, lateral, cache);
   for (const RegionConstant& constant : constants) {
@@ -380,7 +380,7 @@ std::vector<SiteSensitivity> by_differences(const Body& body, const CampaignSett
 std::vector<SiteSensitivity> run_sensitivity(const Body& body, const CampaignSettings& settings,
                                              const std::vector<double>& depths,
                                              const std::vector<RegionConstant>& constants,
-                                             const SitePlans& lateral, FactorCache* cache) {
+                                             const SitePlans& lateral, CampaignCache* cache) {
   require_inside(body, "finite elements");
   refuse_unsupported(settings);
   const CampaignSettings normal = settings_of_paths(settings, depths, lateral);

@@ -10,6 +10,8 @@
 
 namespace palpate::fem {
 
+struct CampaignCache;
+
 /// A constant of the law of one region, by its name in the table of laws.
 struct RegionConstant {
   std::string region;
@@ -56,6 +58,6 @@ struct SiteSensitivity {
 std::vector<SiteSensitivity> run_sensitivity(
     const Body& body, const CampaignSettings& settings, const std::vector<double>& depths,
     const std::vector<RegionConstant>& constants,
-    const std::vector<std::vector<LateralPlan>>& lateral = {}, FactorCache* cache = nullptr);
+    const std::vector<std::vector<LateralPlan>>& lateral = {}, CampaignCache* cache = nullptr);
 
 }  // namespace palpate::fem

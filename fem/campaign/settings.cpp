@@ -17,6 +17,12 @@ void require_positive(const char* name, double value) {
 
 }  // namespace
 
+ToolDescription description_of(const IndentationSettings& settings) {
+  const ToolGeometry& tool = settings.tool;
+  return {name_of(tool.shape), tool.radius, name_of(settings.friction), tool.edge_radius,
+          tool.length};
+}
+
 void check_indentation(const IndentationSettings& settings) {
   check_tool(settings.tool);
   const ToolGeometry& tool = settings.tool;

@@ -12,6 +12,7 @@
 #include "fem/laws/law_table.hpp"
 #include "fem/solid/dilatation.hpp"
 #include "fem/solid/gravity.hpp"
+#include "fem/solve/preload_progress.hpp"
 #include "format/curves.hpp"
 #include "format/relaxation.hpp"
 #include "format/site_fields.hpp"
@@ -26,6 +27,8 @@ struct RegionMaterial {
   double density = 0;  ///< kg/m^3, at rest; 0: that of the gravity
   /// How the isochoric stress relaxes; the constants of `law` are then the instantaneous ones.
   RelaxationSeries relaxation = {};
+
+  bool operator==(const RegionMaterial&) const = default;
 };
 
 struct IndentationSettings {
@@ -99,10 +102,15 @@ struct CampaignSettings {
   /// at their depths; none: the ends of the paths alone.
   std::optional<double> field_friction;
   std::function<void(const CampaignProgress&)> progress;
+  /// Called in every step towards the equilibrium under the weight; may be null.
+  std::function<void(const PreloadProgress&)> preloading;
   /// Called at the start and after every increment of every site, from one thread at a time; may be
   /// null.
   std::function<void(const CampaignProgress&)> advanced;
 };
+
+/// The tool as curves name it.
+ToolDescription description_of(const IndentationSettings& settings);
 
 /// @throws Error(Configuration) when a length is not positive and finite, a lateral depth exceeds
 /// the depth, a count is below one, or a disc with a sharp edge is pressed without friction.

@@ -44,6 +44,15 @@ int fitting_times(double bound, double each, int wanted, const std::string& what
               "allow more memory, use fewer threads or a coarser mesh");
 }
 
+int threads_that_fit(const FactorResources& resources, const std::function<double(int)>& bytes) {
+  int threads = std::max(1, resources.threads);
+  while (resources.memory > 0 && threads > 1 &&
+         resident_bytes() + bytes(threads) > resources.memory)
+    --threads;
+  fitting_times(resources.memory, bytes(threads), 1, "the factor of the stiffness");
+  return threads;
+}
+
 void share_heaps(int cores) {
   mallopt(M_ARENA_MAX, std::max(1, cores));
 }

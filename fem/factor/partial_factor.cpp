@@ -65,17 +65,26 @@ void PartialFactor::take_kept_block(const std::vector<double>& values) {
         values[to_index(entry.value)];
 }
 
-bool PartialFactor::factorize(const std::vector<double>& values, Precision precision) {
+double PartialFactor::bytes(Precision precision, int threads) const {
+  const auto numbers = static_cast<double>(start_.back());
+  return precision == Precision::Single
+             ? sizeof(float) * numbers + fronts_.working_bytes<float>(threads)
+             : sizeof(double) * numbers + fronts_.working_bytes<double>(threads);
+}
+
+bool PartialFactor::factorize(const std::vector<double>& values, Precision precision, int threads) {
   precision_ = precision;
   take_kept_block(values);
-  const bool definite = precision == Precision::Single ? factorize_columns(values, single_)
-                                                       : factorize_columns(values, double_);
+  const bool definite = precision == Precision::Single
+                            ? factorize_columns(values, threads, single_)
+                            : factorize_columns(values, threads, double_);
   if (definite) S_.triangularView<Eigen::StrictlyUpper>() = S_.transpose();
   return definite;
 }
 
 template <class Number>
-bool PartialFactor::factorize_columns(const std::vector<double>& values, Columns<Number>& columns) {
+bool PartialFactor::factorize_columns(const std::vector<double>& values, int threads,
+                                      Columns<Number>& columns) {
   try {
     columns.values.resize(start_.back());
     const Multifrontal::Finished<Number> store = [&](int k, const Number* from) {
@@ -86,7 +95,7 @@ bool PartialFactor::factorize_columns(const std::vector<double>& values, Columns
       add_update(k, update);
     };
     SharedFronts& memory = shared_ != nullptr ? *shared_ : own_;
-    return fronts_.factorize(values, 1, store, add, &memory.of<Number>());
+    return fronts_.factorize(values, threads, store, add, &memory.of<Number>());
   } catch (const std::bad_alloc&) {
     out_of_memory(static_cast<int>(cut_.permutation.size()));
   }

@@ -17,7 +17,8 @@ enum class Precision { Single, Double };
 ///   A = [A_ee A_ek; A_ke A_kk],   A_ee = L L^T (P A_ee P^T in full),   S = A_kk - A_ke A_ee^-1
 ///   A_ek.
 /// A_ee must be positive definite; S may be indefinite. One symbolic analysis, any number of
-/// numerical factorizations of the same pattern, by fronts (Multifrontal). One thread.
+/// numerical factorizations of the same pattern, by fronts (Multifrontal), whose bits do not depend
+/// on the threads. Not thread-safe.
 class PartialFactor {
  public:
   /// `permutation`: elimination order of all unknowns, minimum degree without one; `kept` leave it.
@@ -31,7 +32,10 @@ class PartialFactor {
   /// In single precision it takes half the time and memory, and solutions are off by about 1e-7 of
   /// the condition of A_ee. False when A_ee is not positive definite in that precision. @throws
   /// Error(Internal) when memory runs out.
-  bool factorize(const std::vector<double>& values, Precision precision);
+  bool factorize(const std::vector<double>& values, Precision precision, int threads = 1);
+
+  /// Memory of the factor and, at most, of the fronts while it is computed.
+  double bytes(Precision precision, int threads) const;
 
   /// The unknowns k, in the order of S.
   const std::vector<int>& kept() const { return kept_; }
@@ -66,7 +70,7 @@ class PartialFactor {
   int rows(int supernode) const;
   void take_kept_block(const std::vector<double>& values);
   template <class Number>
-  bool factorize_columns(const std::vector<double>& values, Columns<Number>& columns);
+  bool factorize_columns(const std::vector<double>& values, int threads, Columns<Number>& columns);
   template <class Number>
   void add_update(int supernode, const Number* update);
   template <class Number>

@@ -7,7 +7,6 @@
 #include <limits>
 #include <new>
 
-#include "fem/factor/memory.hpp"
 #include "fem/factor/multifrontal.hpp"
 #include "format/error.hpp"
 #include "format/to_index.hpp"
@@ -165,20 +164,6 @@ void backward_panel(const float* panel, float* own, int inside, const int* rows,
 
 }  // namespace
 
-namespace {
-
-/// As many threads, at most `wanted`, as fit into `bound` (0: none) beside the resident memory.
-/// @throws Error(Configuration) when one does not fit.
-template <class Bytes>
-int threads_that_fit(double bound, int wanted, Bytes&& bytes) {
-  int threads = std::max(1, wanted);
-  while (bound > 0 && threads > 1 && resident_bytes() + bytes(threads) > bound) --threads;
-  fitting_times(bound, bytes(threads), 1, "the factor of the stiffness");
-  return threads;
-}
-
-}  // namespace
-
 RestFactor::RestFactor(const SparsePattern& pattern, const std::vector<int>& permutation,
                        const std::vector<double>& values, const std::string& owner,
                        const FactorResources& resources)
@@ -214,9 +199,8 @@ RestFactor::RestFactor(const SparsePattern& pattern, const std::vector<int>& per
 template <class Number>
 bool RestFactor::factorize(const Multifrontal& fronts, const std::vector<double>& values,
                            const FactorResources& resources) {
-  const int threads = threads_that_fit(resources.memory, resources.threads, [&](int t) {
-    return bytes() + fronts.working_bytes<Number>(t);
-  });
+  const int threads =
+      threads_that_fit(resources, [&](int t) { return bytes() + fronts.working_bytes<Number>(t); });
   const Multifrontal::Finished<Number> finished = [this](int k, const Number* x) { store(k, x); };
   return fronts.factorize(values, threads, finished);
 }

@@ -9,6 +9,7 @@
 
 #include "fem/factor/cholesky.hpp"
 #include "fem/factor/large_pages.hpp"
+#include "fem/factor/memory.hpp"
 
 namespace palpate::fem {
 
@@ -16,12 +17,6 @@ class Multifrontal;
 
 /// Right-hand sides solved at once. Sixteen floats fill one AVX-512 register.
 inline constexpr int kBatch = 16;
-
-/// What a factorization may use.
-struct FactorResources {
-  double memory = 0;  ///< bytes that the process may hold; 0: no bound
-  int threads = 1;    ///< fewer where `memory` is short; the bits are the same
-};
 
 /// A supernodal Cholesky factor in single precision, laid out for solves with kBatch right-hand
 /// sides. The solve is a preconditioner: single precision costs no accuracy and halves the traffic,

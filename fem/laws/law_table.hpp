@@ -60,6 +60,8 @@ struct LawConstants {
   /// @throws Error(Configuration) when the law has no such constant or it is not given.
   double at(std::string_view name) const;
   double& at(std::string_view name);
+
+  bool operator==(const LawConstants&) const = default;
 };
 
 /// Moduli of the body at rest, as of an isotropic solid: fibres are slack there.

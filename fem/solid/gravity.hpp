@@ -21,6 +21,8 @@ struct Gravity {
   GivenShape shape = GivenShape::Unloaded;
   std::vector<double> region_density{};  ///< of each region, kg/m^3; empty: `density` in all
 
+  bool operator==(const Gravity&) const = default;
+
   bool acts() const { return norm(acceleration) > 0 && density > 0; }
   double density_of(int region) const {
     return region_density.empty() ? density : region_density[to_index(region)];

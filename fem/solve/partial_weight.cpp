@@ -17,6 +17,9 @@ constexpr int kFreeSteps = 4;
 constexpr int kStepHalvings = 12;     ///< of a step
 constexpr double kArmijo = 1e-4;      ///< decrease of the energy over that along the slope
 constexpr double kContraction = 0.1;  ///< decrease of the residual that serves as well, relative
+/// Residual of a refined step over its load, and how often it is refined at most.
+constexpr double kRefined = 1e-6;
+constexpr int kRefinements = 4;
 constexpr int kPowerIterations = 30;  ///< for an eigenvalue: its order of magnitude suffices
 
 double mean_edge(const QuadraticMesh& mesh) {
@@ -37,11 +40,58 @@ Eigen::Index largest_node(const Eigen::VectorXd& d) {
 
 }  // namespace
 
-PartialWeight::PartialWeight(const SolidModel& model, const std::vector<int>& permutation)
+PartialWeight::PartialWeight(const SolidModel& model, const std::vector<int>& permutation,
+                             const FactorResources& resources, PreloadCounter* counter)
     : model_(model),
       weight_(model.weight()),
       edge_(mean_edge(model.mesh())),
-      factor_(model.pattern(), &permutation) {}
+      resources_(resources),
+      counter_(counter),
+      factor_(model.pattern(), &permutation, {}) {
+  use_one_thread_per_site();  // fronts are computed in parallel, their dense algebra is not
+}
+
+bool PartialWeight::factorize_in(Precision precision) {
+  const int threads =
+      threads_that_fit(resources_, [&](int t) { return factor_.bytes(precision, t); });
+  return factor_.factorize(K_, precision, threads);
+}
+
+bool PartialWeight::factorize() {
+  if (precision_ == Precision::Single && factorize_in(Precision::Single)) return true;
+  if (!factorize_in(Precision::Double)) return false;
+  precision_ = Precision::Double;
+  return true;
+}
+
+void PartialWeight::solve_once(const Eigen::VectorXd& load, Eigen::VectorXd& d) {
+  Eigen::VectorXd none;
+  factor_.solve_forward(load, none);
+  factor_.solve_backward(none, d);
+}
+
+bool PartialWeight::refine(const Eigen::VectorXd& load, Eigen::VectorXd& d) {
+  solve_once(load, d);
+  Eigen::VectorXd residual(load.size()), more;
+  for (int i = 0; i < kRefinements; ++i) {
+    symmetric_multiply(model_.pattern(), K_, d.data(), residual.data());
+    residual = load - residual;
+    if (residual.norm() <= kRefined * load.norm()) return true;
+    solve_once(residual, more);
+    d += more;
+  }
+  return false;
+}
+
+bool PartialWeight::solve(const Eigen::VectorXd& load, Eigen::VectorXd& d) {
+  if (precision_ == Precision::Single) {
+    if (refine(load, d)) return true;
+    precision_ = Precision::Double;
+    if (!factorize()) return false;
+  }
+  solve_once(load, d);
+  return true;
+}
 
 /// The model has the whole weight; the excess is subtracted.
 PartialWeight::State PartialWeight::evaluate(double part, const Displacement& u) const {
@@ -84,9 +134,9 @@ bool PartialWeight::lowers(double length, const State& next) const {
 
 std::optional<PartialWeight::Outcome> PartialWeight::free_step(double part, State& now,
                                                                Displacement& u) {
-  if (!factor_.factorize(K_)) return Outcome::Unstable;
-  Eigen::VectorXd d = -now.residual;
-  factor_.solve(d.data(), d.data(), workspace_);
+  Eigen::VectorXd d;
+  if (!factorize() || !solve(-now.residual, d)) return Outcome::Unstable;
+  if (counter_ != nullptr) counter_->count_step();
   if (iterations_ == 0) first_step_ = d.segment<3>(3 * largest_node(d)).norm();
   if (free_steps_ == 0) checkpoint_ = {u, now, d};
   double length = 1;
@@ -136,7 +186,7 @@ PartialWeight::Outcome PartialWeight::equilibrate(double part, Displacement& u) 
 
 std::optional<PartialWeight::WeakestMode> PartialWeight::weakest_mode(const Displacement& u) {
   model_.stiffness(u, K_);
-  if (!factor_.factorize(K_)) return std::nullopt;
+  if (!factorize()) return std::nullopt;
   // Inverse iteration from the weight and an uneven load: a mode of buckling may be normal to the
   // weight.
   Eigen::VectorXd mode = weight_ / weight_.norm();
@@ -145,7 +195,11 @@ std::optional<PartialWeight::WeakestMode> PartialWeight::weakest_mode(const Disp
   double stiffness = 0;
   for (int i = 0; i < kPowerIterations; ++i) {
     mode.normalize();
-    factor_.solve(mode.data(), mode.data(), workspace_);
+    const Eigen::VectorXd load = mode;
+    if (i > 0)
+      solve_once(load, mode);
+    else if (!solve(load, mode))
+      return std::nullopt;
     stiffness = 1 / mode.norm();
   }
   const auto largest = static_cast<int>(3 * largest_node(mode));

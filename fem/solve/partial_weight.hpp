@@ -6,8 +6,10 @@
 #include <optional>
 #include <vector>
 
-#include "fem/factor/cholesky.hpp"
+#include "fem/factor/memory.hpp"
+#include "fem/factor/partial_factor.hpp"
 #include "fem/solid/solid_model.hpp"
+#include "fem/solve/preload_progress.hpp"
 
 namespace palpate::fem {
 
@@ -22,11 +24,15 @@ namespace palpate::fem {
 /// In equilibrium the residual is at most 1e-9 of the weight, or its rounding error where that is
 /// larger: a slender body is so much stiffer along its axis than across it that the last digit of
 /// the displacements stands for a force of more than 1e-8 of the weight.
-/// One thread.
+/// Factors are in single precision, and steps are refined by their residuals [Higham 2002, ch. 12];
+/// where that does not converge, as on a slender body, they are in double precision. The bits do
+/// not depend on the threads of the factorizations.
 class PartialWeight {
  public:
-  /// `permutation`: elimination order of the model. Both must outlive this.
-  PartialWeight(const SolidModel& model, const std::vector<int>& permutation);
+  /// `permutation`: elimination order of the model. `counter`: of the steps; may be null. All must
+  /// outlive this.
+  PartialWeight(const SolidModel& model, const std::vector<int>& permutation,
+                const FactorResources& resources = {}, PreloadCounter* counter = nullptr);
 
   enum class Outcome {
     Found,
@@ -35,6 +41,7 @@ class PartialWeight {
     Unconverged  ///< no step lowers the energy, or there were too many of them
   };
   /// Moves u to equilibrium with `part` of the weight. Unless it is found, u is no equilibrium.
+  /// @throws Error(Configuration) when a factorization needs more memory than it may use.
   Outcome equilibrate(double part, Displacement& u);
 
   int iterations() const { return iterations_; }  ///< of the last call
@@ -55,6 +62,14 @@ class PartialWeight {
     Eigen::VectorXd residual;
   };
 
+  /// The factor of K_; false where it is not positive definite.
+  bool factorize();
+  bool factorize_in(Precision precision);
+  /// d = K_^-1 load, with the factor of K_. False where K_ is not positive definite after all.
+  bool solve(const Eigen::VectorXd& load, Eigen::VectorXd& d);
+  bool refine(const Eigen::VectorXd& load, Eigen::VectorXd& d);
+  void solve_once(const Eigen::VectorXd& load, Eigen::VectorXd& d);
+
   State evaluate(double part, const Displacement& u) const;
   bool is_equilibrium(const State& now, const Displacement& u);
   double rounding_error(const Displacement& u) const;
@@ -67,8 +82,10 @@ class PartialWeight {
   const SolidModel& model_;
   Eigen::VectorXd weight_;
   double edge_;  ///< m, mean of the elements
-  Cholesky factor_;
-  SolveWorkspace workspace_;
+  FactorResources resources_;
+  PreloadCounter* counter_;
+  PartialFactor factor_;
+  Precision precision_ = Precision::Single;
   std::vector<double> K_;
 
   /// The state to which steps that lower nothing are taken back.

@@ -17,7 +17,7 @@ namespace palpate::fem {
 namespace {
 
 constexpr double kSmallestPart = 1.0 / 1024;  ///< of the weight, applied at once
-constexpr int kMostIterations = 300;          ///< of all parts
+constexpr int kMostStepsInAll = 300;          ///< of all parts
 constexpr int kEasy = 8;  ///< iterations up to which the next part is twice as large
 /// Displacement over that of the linear body. Above it the body may have left, somewhere between
 /// two equilibria, a state from which it buckles.
@@ -38,9 +38,11 @@ std::string percent(double part) {
 /// Equilibria from no weight to all of it, in parts.
 class WeightPath {
  public:
-  WeightPath(const SolidModel& model, PartialWeight& body, std::string owner)
+  WeightPath(const SolidModel& model, PartialWeight& body, PreloadCounter& counter,
+             std::string owner)
       : model_(model),
         body_(body),
+        counter_(counter),
         owner_(std::move(owner)),
         u_(Displacement::Zero(3, model.mesh().nodes())),
         weakest_(body.weakest_mode(u_)),
@@ -53,7 +55,7 @@ class WeightPath {
     while (carried_ < 1) {
       const double next = std::min(1.0, carried_ + part);
       Displacement u = u_;
-      if (iterations > kMostIterations) refuse_outcome(Outcome::Unconverged, u);
+      if (iterations > kMostStepsInAll) refuse_outcome(Outcome::Unconverged, u);
       const Outcome outcome = body_.equilibrate(next, u);
       iterations += body_.iterations();
       if (outcome == Outcome::Found && follows(u)) {
@@ -74,6 +76,7 @@ class WeightPath {
 
   void accept(double part, Displacement u) {
     carried_ = part;
+    counter_.carry(part);
     u_ = std::move(u);
     if (carried_ == 1) return;
     weakest_ = body_.weakest_mode(u_);
@@ -114,6 +117,7 @@ class WeightPath {
 
   const SolidModel& model_;
   PartialWeight& body_;
+  PreloadCounter& counter_;
   std::string owner_;
   double carried_ = 0;
   Displacement u_;
@@ -144,15 +148,16 @@ Eigen::Vector3d nearest_in_triangle(const Eigen::Vector3d& a, const Eigen::Vecto
 }  // namespace
 
 Displacement equilibrium_under_weight(const SolidModel& model, const std::vector<int>& permutation,
-                                      const std::string& owner) {
+                                      const std::string& owner, const PreloadOptions& options) {
   Displacement u = Displacement::Zero(3, model.mesh().nodes());
   if (model.weight().isZero(0)) return u;
-  PartialWeight body(model, permutation);
+  PreloadCounter counter(options.progress);
+  PartialWeight body(model, permutation, options.resources, &counter);
   if (body.equilibrate(1, u) == Outcome::Found) {
     const double largest = u.colwise().norm().maxCoeff();
     if (largest <= kAmplified * body.first_step()) return u;
   }
-  return WeightPath(model, body, owner).follow();
+  return WeightPath(model, body, counter, owner).follow();
 }
 
 BoundaryPoint nearest_boundary_point(const QuadraticMesh& mesh, const Eigen::Matrix3Xd& positions,

@@ -6,9 +6,17 @@
 #include <string>
 #include <vector>
 
+#include "fem/factor/memory.hpp"
 #include "fem/solid/solid_model.hpp"
+#include "fem/solve/preload_progress.hpp"
 
 namespace palpate::fem {
+
+/// How an equilibrium under the weight is computed. The bits do not depend on it.
+struct PreloadOptions {
+  FactorResources resources;
+  PreloadCounter::Tell progress;  ///< called in every step; may be null
+};
 
 /// The displacement in equilibrium with the weight; 0 without gravity. The weight is applied at
 /// once (PartialWeight), and in parts, from one equilibrium to the next, where that does not
@@ -16,11 +24,12 @@ namespace palpate::fem {
 /// eigenvalue of the stiffness is followed: an equilibrium beyond the weight at which it vanishes
 /// is one of several, chosen by the rounding of the mesh, and is refused. `permutation`:
 /// elimination order of the model.
+/// @throws Error(Configuration) when a factorization needs more memory than it may use.
 /// @throws Error(Geometry) when the body buckles or collapses, with the fraction of the weight and
 /// the place, when an element is crushed or when Newton's method does not converge; `owner` names
 /// the body.
 Displacement equilibrium_under_weight(const SolidModel& model, const std::vector<int>& permutation,
-                                      const std::string& owner);
+                                      const std::string& owner, const PreloadOptions& options = {});
 
 /// A point of a facet, with the shape functions of its nodes there.
 struct BoundaryPoint {

@@ -40,12 +40,15 @@ Eigen::Matrix3d edges_at(const Eigen::Matrix3Xd& X, const Tetrahedron& t) {
 class UnloadedShape {
  public:
   UnloadedShape(const Body& given, const std::vector<Law>& laws, Dilatation dilatation,
-                const Gravity& gravity, const std::vector<int>& permutation)
+                const Gravity& gravity, const std::vector<int>& permutation,
+                const PreloadOptions& options)
       : given_(given),
         laws_(laws),
         dilatation_(dilatation),
         gravity_(gravity),
         permutation_(permutation),
+        resources_(options.resources),
+        counter_(options.progress),
         mesh_(make_quadratic_mesh(given, is_linear(dilatation))),
         x_(mesh_.X.leftCols(mesh_.corners())),
         X_(x_),
@@ -59,17 +62,19 @@ class UnloadedShape {
       const double next = std::min(1.0, carried + part);
       if (iterate(next)) {
         carried = next;
+        counter_.carry(carried);
         continue;
       }
       X_ = X;
       u_ = u;
       part *= 0.5;
-      if (part < kSmallestPartOfShape || iterations_ > kMostEquilibria) refuse_shape(carried);
+      if (part < kSmallestPartOfShape || counter_.now().shapes > kMostEquilibria)
+        refuse_shape(carried);
     }
     Body body = moved_body();
     for (const Edge& ends : edges_of(body.boundary)) add_curved_edge(ends, body);
     SolidModel model = model_of(body);
-    return {std::move(body), std::move(model), std::move(u_), distance_, iterations_};
+    return {std::move(body), std::move(model), std::move(u_), distance_, counter_.now().shapes};
   }
 
  private:
@@ -79,7 +84,7 @@ class UnloadedShape {
     double nearest = std::numeric_limits<double>::infinity();
     const double extent = (x_.rowwise().maxCoeff() - x_.rowwise().minCoeff()).norm();
     for (int i = 0; i < kShapeIterations; ++i) {
-      ++iterations_;
+      counter_.count_shape();
       const SolidModel model = model_of(moved_body());
       if (!equilibrate(model, part))
         return failed("the body finds no equilibrium on the way to it");
@@ -97,7 +102,7 @@ class UnloadedShape {
 
   /// From the last displacement; where that is no good start from none, in parts.
   bool equilibrate(const SolidModel& model, double part) {
-    PartialWeight weight(model, permutation_);
+    PartialWeight weight(model, permutation_, resources_, &counter_);
     if (weight.equilibrate(part, u_) == PartialWeight::Outcome::Found) return true;
     u_.setZero();
     double carried = 0, step = part;
@@ -207,12 +212,13 @@ class UnloadedShape {
   Dilatation dilatation_;
   const Gravity& gravity_;
   const std::vector<int>& permutation_;
+  FactorResources resources_;
+  PreloadCounter counter_;
   QuadraticMesh mesh_;  ///< of the given shape
   std::map<Edge, int> edge_node_ = nodes_of_edges(mesh_);
   Eigen::Matrix3Xd x_, X_;  ///< corner nodes: as given, without weight
   Displacement u_;
   double distance_ = 0;
-  int iterations_ = 0;
   std::string reason_;
 };
 
@@ -220,8 +226,9 @@ class UnloadedShape {
 
 UnloadedBody find_unloaded_body(const Body& given, const std::vector<Law>& laws,
                                 Dilatation dilatation, const Gravity& gravity,
-                                const std::vector<int>& permutation) {
-  return UnloadedShape(given, laws, dilatation, gravity, permutation).find();
+                                const std::vector<int>& permutation,
+                                const PreloadOptions& options) {
+  return UnloadedShape(given, laws, dilatation, gravity, permutation, options).find();
 }
 
 }  // namespace palpate::fem

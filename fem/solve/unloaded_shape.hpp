@@ -7,6 +7,7 @@
 
 #include "fem/laws/law.hpp"
 #include "fem/solid/solid_model.hpp"
+#include "fem/solve/preload.hpp"
 #include "format/body.hpp"
 
 namespace palpate::fem {
@@ -32,6 +33,7 @@ struct UnloadedBody {
 /// @throws Error(Geometry) where no such body is found, with the fraction of the weight and why.
 UnloadedBody find_unloaded_body(const Body& given, const std::vector<Law>& laws,
                                 Dilatation dilatation, const Gravity& gravity,
-                                const std::vector<int>& permutation);
+                                const std::vector<int>& permutation,
+                                const PreloadOptions& options = {});
 
 }  // namespace palpate::fem

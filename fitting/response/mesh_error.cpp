@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <vector>
+
+#include "format/to_index.hpp"
 
 namespace palpate::fitting {
 
@@ -35,11 +38,13 @@ double resolution_of(const CurveSample& sample) {
   return std::log(std::max(kLeastFacets, sample.facets_in_contact));
 }
 
-std::vector<Difference> differences(const Curves& curves, PathKind kind) {
+using IsChosen = std::function<bool(const SiteCurves&)>;
+
+std::vector<Difference> differences(const Curves& curves, PathKind kind, const IsChosen& chosen) {
   std::vector<Difference> found;
   for (const SiteCurves& site : curves.sites)
     for (const CurvePath& path : site.paths) {
-      if (path.kind != kind) continue;
+      if (path.kind != kind || !chosen(site)) continue;
       const double largest = largest_force(path);
       for (const CurveSample& sample : path.samples)
         if (!std::isnan(sample.mesh_difference) && largest > 0)
@@ -69,13 +74,17 @@ double median_of(std::vector<double> values) {
   return *middle;
 }
 
-/// The bounds of the paths of one kind. @return their confidence; NaN where they stay unknown.
-double bound_paths(Curves& curves, PathKind kind) {
-  std::vector<Difference> all = differences(curves, kind);
+/// The bounds of the paths of one kind at the chosen sites. @return their confidence; NaN where
+/// they stay unknown or there is no such path.
+double bound_paths(Curves& curves, PathKind kind, const IsChosen& chosen) {
+  std::vector<Difference> all = differences(curves, kind, chosen);
+  if (all.empty()) all = differences(curves, kind, [](const SiteCurves&) { return true; });
   if (all.empty()) return kUnknown;
+  bool any = false;
   for (SiteCurves& site : curves.sites)
     for (CurvePath& path : site.paths) {
-      if (path.kind != kind) continue;
+      if (path.kind != kind || !chosen(site)) continue;
+      any = true;
       const double largest = largest_force(path);
       for (std::size_t i = 0; i < path.samples.size(); ++i) {
         CurveSample& sample = path.samples[i];
@@ -84,14 +93,21 @@ double bound_paths(Curves& curves, PathKind kind) {
       }
     }
   const double count = static_cast<double>(std::min(kDifferencesOfBound, all.size()));
-  return count / (count + 1);
+  return any ? count / (count + 1) : kUnknown;
 }
 
 }  // namespace
 
-void bound_mesh_errors(Curves& curves) {
-  const double normal = bound_paths(curves, PathKind::Normal);
-  curves.mesh_error_confidence = std::fmin(normal, bound_paths(curves, PathKind::Lateral));
+void bound_mesh_errors(Curves& curves, const std::vector<bool>& at_edge) {
+  curves.mesh_error_confidence = kUnknown;
+  for (const bool edge : {false, true}) {
+    const auto chosen = [&](const SiteCurves& site) {
+      return (!at_edge.empty() && at_edge[to_index(site.vertex)]) == edge;
+    };
+    for (const PathKind kind : {PathKind::Normal, PathKind::Lateral})
+      curves.mesh_error_confidence =
+          std::fmin(curves.mesh_error_confidence, bound_paths(curves, kind, chosen));
+  }
 }
 
 MeshErrorSummary mesh_error_summary(const Curves& curves, PathKind kind) {

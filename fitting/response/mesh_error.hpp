@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <vector>
 
 #include "format/curves.hpp"
 #include "format/numbers.hpp"
@@ -19,7 +20,10 @@ inline constexpr std::size_t kDifferencesOfBound = 19;
 /// contact (by the ratio of facets_in_contact): of 20 values in random order the last is the
 /// largest in one of 20 cases. With fewer differences all are taken, and the confidence is lower:
 /// it is that of the kind that has the fewest.
-void bound_mesh_errors(Curves& curves);
+/// `at_edge`: for each response vertex whether it is pressed at a sharp edge; empty: none is. Sites
+/// at edges are bounded by the differences there, the others by theirs; by all of them where their
+/// own kind of site has none.
+void bound_mesh_errors(Curves& curves, const std::vector<bool>& at_edge = {});
 
 /// Median and largest mesh_error of the paths of a kind, relative as above: at their ends, and at
 /// their first samples.

@@ -127,8 +127,9 @@ void describe_solver(V& v, fem::CampaignSettings& s) {
        {.low = 0, .high = fem::IndentationSettings::kMaxRefinements}});
   v.integer(s.mesh_error_sites,
             {"mesh_error_sites",
-             "largest number of sites that are pressed on a finer mesh too, which bounds the "
-             "[error of the mesh](campaigns.md#the-error-of-the-mesh) of all sites; 0: unknown",
+             "largest number of sites, of those at sharp edges and of the others each, that are "
+             "pressed on a finer mesh too, which bounds the "
+             "[error of the mesh](campaigns.md#the-error-of-the-mesh); 0: unknown",
              kOptional,
              {.low = 0, .high = 1000}});
 }

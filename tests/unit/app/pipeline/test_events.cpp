@@ -174,6 +174,23 @@ TEST(TextSink, PrintsProgressByLineAndByBar) {
   EXPECT_THAT(text_of({SiteFinished{}}), IsEmpty());
 }
 
+/// Each step takes seconds on a large body, before any site begins.
+TEST(TextSink, TellsTheStepsBeforeTheFirstSite) {
+  std::string shown;
+  const TextOutput output{[&](std::string_view text) { shown += text; }, true};
+  TextSink sink({output, output, Verbosity::Normal});
+  sink(PreloadStep{1, 0, 0});
+  EXPECT_THAT(shown, IsEmpty());
+  std::this_thread::sleep_for(std::chrono::milliseconds(250));  // progress is shown so often
+  sink(PreloadStep{12, 0.5, 0});
+  EXPECT_THAT(shown, HasSubstr("\rprecompute: equilibrium under the weight, 12 steps, 50 % of it "
+                               "carried\x1b[K"));
+  std::this_thread::sleep_for(std::chrono::milliseconds(250));
+  sink(PreloadStep{30, 0, 4});
+  EXPECT_THAT(shown, HasSubstr("\rprecompute: shape without weight, 4 shapes tried, 30 steps"));
+  EXPECT_THAT(text_of({PreloadStep{1, 0, 0}}), IsEmpty());  // a line every ten seconds
+}
+
 /// The estimate of the time left begins anew, and so does the bar.
 TEST(TextSink, TellsTheProgressOnTheFinerMeshApart) {
   const std::string shown =
@@ -279,6 +296,8 @@ TEST(JsonSink, WritesOneObjectForEachEvent) {
   EXPECT_EQ(json_of(CampaignStarted{"Haswell", 3, 0, false, "c.journal"}),
             Json::parse(R"({"event": "start", "blas_kernel": "Haswell", "known_sites": 3,
                             "dropped_bytes": 0, "moved_aside": false})"));
+  EXPECT_EQ(json_of(PreloadStep{12, 0.5, 0}),
+            Json::parse(R"({"event": "preload", "steps": 12, "carried": 0.5, "shapes": 0})"));
   EXPECT_EQ(json_of(SiteFinished{7, SiteStatus::Partial, "line search failed", 1.5}),
             Json::parse(R"({"event": "site", "vertex": 7, "status": "partial",
                             "reason": "line search failed", "cpu_seconds": 1.5})"));

@@ -9,7 +9,7 @@
 #include <map>
 
 #include "fem/campaign/campaign.hpp"
-#include "fem/factor/rest_factor.hpp"
+#include "fem/campaign/campaign_cache.hpp"
 #include "format/error.hpp"
 #include "format/to_index.hpp"
 #include "tests/support/block_body.hpp"
@@ -70,10 +70,10 @@ TEST(Campaign, ThatSharesAFactorHasTheSameBits) {
   points.points = {{{0.002, 0.001, 0}, {0, 0, -1}}};
   points.indentation.lateral_depths.clear();
   CampaignReport report;
-  FactorCache cache;
+  CampaignCache cache;
   run_campaign(body, points, report, &cache);
   const Curves after = run_campaign(body, some, report, &cache);
-  EXPECT_EQ(cache.factorizations(), 1);
+  EXPECT_EQ(cache.factors.factorizations(), 1);
   ASSERT_EQ(after.sites.size(), 1u);
   expect_same_bits(after.sites[0], run_campaign(body, some, report).sites[0]);
 }

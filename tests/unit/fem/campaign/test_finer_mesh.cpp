@@ -56,17 +56,34 @@ TEST(FinerMesh, ChoosesSitesFarApart) {
   EXPECT_EQ(sites_far_apart(body, {3, 5}, 4), (std::vector<std::int32_t>{3, 5}));
 }
 
-TEST(FinerMesh, CountsEveryTenthSiteOfFewButTwo) {
-  const Body body = uneven_block();
+/// On top of a block 9 x 9 sites, the outer ones 4 mm from the edges, where the contact of a deep
+/// press reaches.
+TEST(FinerMesh, ChoosesSitesAtSharpEdgesAndElsewhere) {
+  const Body body = test::make_block(test::even(-0.02, 0.02, 10), test::even(-0.02, 0.02, 10),
+                                     test::even(0, 0.02, 4));
+  const std::vector<std::int32_t> sites = sites_of(body);
+  ASSERT_EQ(sites.size(), 81U);
+  const ToolDescription sphere{"sphere", 0.01, "frictionless", 0, 0};
+  const auto near = at_sharp_edges(body, sphere, 0.001),
+             shallow = at_sharp_edges(body, sphere, 5e-4);
+  for (const std::int32_t v : sites) {
+    const Vec3& x = body.nodes[to_index(body.response.node[to_index(v)])];
+    EXPECT_EQ(near[to_index(v)], std::max(std::abs(x[0]), std::abs(x[1])) > 0.0155);
+    EXPECT_FALSE(shallow[to_index(v)]);
+  }
   CampaignSettings settings = pressed();
-  EXPECT_EQ(count_on_finer_mesh(settings, 100), 0);
+  settings.indentation.tool.radius = sphere.radius;
+  EXPECT_TRUE(sites_on_finer_mesh(body, settings, sites).empty());
   settings.mesh_error_sites = 4;
-  EXPECT_EQ(count_on_finer_mesh(settings, 100), 4);
-  EXPECT_EQ(count_on_finer_mesh(settings, 35), 3);
-  EXPECT_EQ(count_on_finer_mesh(settings, 5), 2);
-  EXPECT_EQ(count_on_finer_mesh(settings, 1), 1);
+  const auto chosen = sites_on_finer_mesh(body, settings, sites);
+  EXPECT_EQ(chosen.size(), 7U);  // four of the 49 inside, every tenth of the 32 at the edges
+  EXPECT_EQ(std::count_if(chosen.begin(), chosen.end(),
+                          [&](std::int32_t v) { return near[to_index(v)]; }),
+            3);
+  EXPECT_TRUE(std::is_sorted(chosen.begin(), chosen.end()));
+  EXPECT_EQ(sites_on_finer_mesh(body, settings, {sites.front()}), std::vector{sites.front()});
   settings.dilatation = Dilatation::LinearNodal;
-  EXPECT_EQ(count_on_finer_mesh(settings, 100), 0);
+  EXPECT_TRUE(sites_on_finer_mesh(body, settings, sites).empty());
 }
 
 /// Three sites bound the error of others, which is known from elements that are small beside the

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "fem/campaign/campaign_cache.hpp"
 #include "fem/campaign/indentation.hpp"
 #include "fem/campaign/sensitivity.hpp"
 #include "fem/campaign/site_body.hpp"
@@ -257,14 +258,14 @@ TEST(Sensitivity, ReusesAFactorWhileItServes) {
     double top, base, poisson;
     int factorizations;
   };
-  FactorCache cache;
+  CampaignCache cache;
   for (const Trial& t :
        {Trial{8e3, 20e3, 0.45, 1}, Trial{24e3, 60e3, 0.45, 1}, Trial{24e3, 70e3, 0.45, 1},
         Trial{24e3, 70e3, 0.49, 2}, Trial{6e3, 70e3, 0.49, 3}, Trial{0.6e3, 7e3, 0.49, 3}}) {
     const CampaignSettings settings = settings_of(body, t.top, t.base, t.poisson);
     const auto reused = run_sensitivity(body, settings, kDepths, constants, {}, &cache).front();
     const auto alone = run_sensitivity(body, settings, kDepths, constants).front();
-    EXPECT_EQ(cache.factorizations(), t.factorizations) << t.top << ' ' << t.base;
+    EXPECT_EQ(cache.factors.factorizations(), t.factorizations) << t.top << ' ' << t.base;
     ASSERT_EQ(reused.samples.size(), kDepths.size()) << reused.reason;
     for (std::size_t i = 0; i < kDepths.size(); ++i) {
       const ForceSensitivity &a = reused.samples[i], &b = alone.samples[i];

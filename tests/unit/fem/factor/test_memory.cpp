@@ -29,6 +29,15 @@ TEST(Memory, RefusesABoundThatIsTooSmall) {
   }
 }
 
+TEST(Memory, OfAFactorizationLimitsItsThreads) {
+  const auto bytes = [](int threads) { return (1 + threads) * kEach; };
+  EXPECT_EQ(threads_that_fit({0, 4}, bytes), 4);
+  EXPECT_EQ(threads_that_fit({10 * kEach, 4}, bytes), 4);
+  EXPECT_EQ(threads_that_fit({4.5 * kEach, 4}, bytes), 3);
+  EXPECT_EQ(threads_that_fit({2.5 * kEach, 4}, bytes), 1);
+  EXPECT_THROW(threads_that_fit({1.5 * kEach, 4}, bytes), Error);
+}
+
 TEST(Memory, OfTheProcessIsNotZero) {
   EXPECT_GT(resident_bytes(), 1e5);
 }

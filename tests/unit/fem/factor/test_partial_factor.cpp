@@ -134,6 +134,15 @@ TEST_P(PartialFactorTest, FactorsOnTwoThreadsMayShareTheMemoryOfTheirFronts) {
   other.join();
 }
 
+TEST_P(PartialFactorTest, HasTheSameBitsOnAnyThreads) {
+  PartialFactor alone(a_.model.pattern(), nullptr, kKept),
+      factor(a_.model.pattern(), nullptr, kKept);
+  ASSERT_TRUE(alone.factorize(a_.K, GetParam()));
+  ASSERT_TRUE(factor.factorize(a_.K, GetParam(), 3));
+  EXPECT_EQ(factor.schur_complement(), alone.schur_complement());
+  EXPECT_LE(alone.bytes(GetParam(), 1), factor.bytes(GetParam(), 3));
+}
+
 INSTANTIATE_TEST_SUITE_P(Factor, PartialFactorTest,
                          testing::Values(Precision::Single, Precision::Double),
                          [](const auto& instance) {

@@ -151,6 +151,34 @@ TEST(Preload, BendsARodLikeTheElastica) {
   EXPECT_GT(expected.along, 0.5 * kLength);
 }
 
+/// A heavy soft column: the whole weight at once does not converge.
+TEST(Preload, TellsItsStepsAndHasTheSameBitsOnAnyThreads) {
+  const Body body =
+      test::make_block(test::even(0, 0.02, 3), test::even(0, 0.02, 3), test::even(0, 0.06, 9));
+  const SolidModel model(body, {make_law({2e3, 0.45}, "t")}, Dilatation::Mean,
+                         Gravity{{0, 0, 9.81}, 1000});
+  const auto permutation = nested_dissection(model.pattern());
+  std::vector<PreloadProgress> told;
+  const Displacement alone = equilibrium_under_weight(model, permutation, body.name);
+  const Displacement u = equilibrium_under_weight(
+      model, permutation, body.name,
+      {{.threads = 3}, [&](const PreloadProgress& p) { told.push_back(p); }});
+  EXPECT_EQ(u, alone);
+  Eigen::VectorXd residual;
+  model.forces(u, residual);
+  EXPECT_LT(residual.norm(), 2e-9 * model.weight().norm());
+  ASSERT_FALSE(told.empty());
+  for (std::size_t i = 0; i < told.size(); ++i) EXPECT_EQ(told[i].steps, static_cast<int>(i) + 1);
+}
+
+TEST(Preload, RefusesTooLittleMemory) {
+  const SolidModel model(column(0.02, 0.04), {make_law({8e3, 0.45}, "t")}, Dilatation::Mean,
+                         Gravity{{0, 0, -9.81}, 1000});
+  EXPECT_THROW(equilibrium_under_weight(model, nested_dissection(model.pattern()), "column",
+                                        {{.memory = 1}, {}}),
+               Error);
+}
+
 TEST(Preload, IsZeroWithoutGravity) {
   EXPECT_TRUE(displaced(column(0.06, 0.08), {1e4, 0.3}, {}).isZero(0));
 }

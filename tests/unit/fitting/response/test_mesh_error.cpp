@@ -86,6 +86,21 @@ TEST(MeshError, OfLateralPathsIsThatOfLateralDifferences) {
   EXPECT_NEAR(curves.mesh_error_confidence, 2.0 / 3, 1e-12);
 }
 
+/// A press at a sharp edge errs ten times as much, at the resolution of a site elsewhere too.
+TEST(MeshError, AtSharpEdgesIsThatOfSitesThere) {
+  const std::vector<double> force(20, 2.0), large(20, 0.4), small(20, 0.04);
+  Curves curves;
+  curves.sites = {site_of(0, force, large, 1), site_of(1, force, small, 10),
+                  site_of(2, force, {}, 1), site_of(3, force, {}, 1)};
+  bound_mesh_errors(curves, {true, false, true, false});
+  EXPECT_NEAR(relative_error(curves.sites[2], 5), 0.2, 1e-12);
+  EXPECT_NEAR(relative_error(curves.sites[3], 5), 0.02, 1e-12);
+  EXPECT_DOUBLE_EQ(curves.mesh_error_confidence, 0.95);
+  // No site at an edge was pressed twice: those of all are the best that is known.
+  bound_mesh_errors(curves, {false, false, true, false});
+  EXPECT_NEAR(relative_error(curves.sites[2], 5), 0.2, 1e-12);
+}
+
 TEST(MeshError, OfFewDifferencesHasALowerConfidence) {
   Curves curves;
   curves.sites = {site_of(0, {1, 1, 1}, {0.1, -0.3, 0.2}, 1), site_of(1, {1, 1, 1}, {}, 5)};
