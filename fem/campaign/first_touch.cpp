@@ -75,7 +75,7 @@ SiteAtRest site_at_rest(const CampaignContext& context, const SiteBody& body, To
     const double extent = (mesh.X.rowwise().maxCoeff() - mesh.X.rowwise().minCoeff()).norm();
     contact.move_to(
         tool_with_tip(context, point, rest.point - kFarAway * extent * to_eigen(point.inward)));
-    rest.failure = equilibrium.solve(contact, false, rest.u).reason;
+    rest.failure = equilibrium.settle(contact, rest.u).reason;
     const Eigen::Vector3d X = context.reference_position(point.position);
     rest.point = X + displacement_at(mesh, rest.u, X);
   }

@@ -15,6 +15,8 @@ constexpr double kSharedTolerance = 0.5;
 /// Factor on that tolerance for a no-slip normal path: the surface is bonded where it is met, so
 /// that errors add up, and an error may decide whether a node has touched.
 constexpr double kNoSlipTolerance = 0.5;
+/// Residual before the touch, over the weight.
+constexpr double kSettled = 1e-6;
 /// Steps with the shared factor before a site gets a factor of its own: as many as that costs, by
 /// its size, and no more than an increment may take.
 constexpr int kFewestSteps = 15, kMostSteps = 80;
@@ -73,7 +75,7 @@ NewtonResult SiteEquilibrium::solve(const ToolContact& contact, bool direct_allo
                                     Displacement& u) {
   NewtonResult result;
   if (shared_) {
-    result = solve_shared(contact, u);
+    result = solve_shared(contact, options_of_shared(), u);
     if (result.converged || !direct_allowed || !direct_possible_) return result;
   }
   const int before = result.iterations;
@@ -88,12 +90,24 @@ void SiteEquilibrium::start_path(const Tool& tool, const Displacement& u) {
   if (direct_) direct_->start_path();
 }
 
-NewtonResult SiteEquilibrium::solve_shared(const ToolContact& contact, Displacement& u) {
+NewtonResult SiteEquilibrium::settle(const ToolContact& contact, Displacement& u) {
+  NewtonOptions options = options_of_shared();
+  options.least_force = context_.model.weight_norm();
+  options.tolerance = kSettled;
+  return solve_shared(contact, options, u);
+}
+
+NewtonOptions SiteEquilibrium::options_of_shared() const {
   NewtonOptions options;
   options.round_off = context_.round_off;
   options.tolerance = kSharedTolerance * force_tolerance_;
   options.max_iterations = kMostSteps + steps_before_own_factor(*context_.rest_factor);
   if (context_.indentation.friction == ToolFriction::NoSlip) options.tolerance *= kNoSlipTolerance;
+  return options;
+}
+
+NewtonResult SiteEquilibrium::solve_shared(const ToolContact& contact, const NewtonOptions& options,
+                                           Displacement& u) {
   Displacement trial = u;
   NewtonResult result = shared_->solve(contact, options, trial);
   if (result.converged)

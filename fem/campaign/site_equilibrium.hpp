@@ -26,6 +26,10 @@ class SiteEquilibrium {
   /// about a hundred times more.
   NewtonResult solve(const ToolContact& contact, bool direct_allowed, Displacement& u);
 
+  /// Moves `u` to the equilibrium under the weight, without the tool, by the shared factor. The
+  /// residual is then at most 1e-6 of the weight: no mode is off by more than that part of its sag.
+  NewtonResult settle(const ToolContact& contact, Displacement& u);
+
   /// To be called at the start of a path: the tool and the equilibrium there.
   void start_path(const Tool& tool, const Displacement& u);
 
@@ -33,7 +37,9 @@ class SiteEquilibrium {
   void allow_error(double force_tolerance) { force_tolerance_ = force_tolerance; }
 
  private:
-  NewtonResult solve_shared(const ToolContact& contact, Displacement& u);
+  NewtonOptions options_of_shared() const;
+  NewtonResult solve_shared(const ToolContact& contact, const NewtonOptions& options,
+                            Displacement& u);
   NewtonResult solve_direct(const ToolContact& contact, Displacement& u);
   NewtonResult solve_direct_alone(const ToolContact& contact, Displacement& u);
 

@@ -249,7 +249,8 @@ NewtonResult NewtonSolver::descend(const ToolContact& contact, const NewtonOptio
                                now.residual.norm() < kLongIncrement * contact.tool_force(u).norm());
   for (; result.iterations < options.max_iterations; ++result.iterations) {
     const double before = now.residual.norm();
-    const double allowed = options.tolerance * std::max(contact.tool_force(u).norm(), 1e-12);
+    const double allowed =
+        options.tolerance * std::max(contact.tool_force(u).norm(), options.least_force);
     if (imbalance(model_, now.residual, options.round_off) <= allowed) {
       result.converged = true;
       return result;

@@ -14,7 +14,8 @@
 namespace palpate::fem {
 
 struct NewtonOptions {
-  double tolerance = 1e-4;  ///< |residual| over |tool force|
+  double tolerance = 1e-4;     ///< |residual| over |tool force|
+  double least_force = 1e-12;  ///< N, in place of a smaller tool force
   int max_iterations = 40;
   double round_off = 0;  ///< N, residual that counts as none
   /// Reuse the factor while it converges well (modified Newton).

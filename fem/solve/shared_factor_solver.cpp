@@ -224,7 +224,7 @@ NewtonResult SharedFactorSolver::descend(const ToolContact& contact, const Newto
   Eigen::Vector3d before = Eigen::Vector3d::Zero();
   for (; result.iterations < options.max_iterations; ++result.iterations) {
     const Eigen::Vector3d force = contact.tool_force(u);
-    const double scale = std::max(force.norm(), 1e-12), last_error = error_;
+    const double scale = std::max(force.norm(), options.least_force), last_error = error_;
     error_ = imbalance(whole_, now.residual, options.round_off) / scale;
     if (result.iterations > 0)
       sensitivity_ =
