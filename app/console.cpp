@@ -135,12 +135,11 @@ void ProgressDisplay::show(const PreloadStep& p) {
   const Clock::time_point now = Clock::now();
   if (!is_due(now)) return;
   last_ = now;
-  const std::string steps = count_text(p.steps, "step");
-  const std::string text =
-      p.shapes > 0 ? fmt::format("{}: shape without weight, {} tried, {}", label_,
-                                 count_text(p.shapes, "shape"), steps)
-                   : fmt::format("{}: equilibrium under the weight, {}, {:.3g} % of it carried",
-                                 label_, steps, 100 * p.carried);
+  std::string text =
+      fmt::format("{}: {}, step {}", label_,
+                  p.shapes > 0 ? "shape without weight" : "equilibrium under the weight", p.steps);
+  if (p.shapes > 0) text += ", " + count_text(p.shapes, "shape") + " tried";
+  if (p.carried > 0) text += fmt::format(", {:.3g} % of the weight reached", 100 * p.carried);
   if (!output_.terminal) return output_.line(text);
   const std::string cut = text.substr(
       0, output_.columns > 0 ? static_cast<std::size_t>(output_.columns - 1) : std::string::npos);

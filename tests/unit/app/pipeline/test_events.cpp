@@ -183,11 +183,11 @@ TEST(TextSink, TellsTheStepsBeforeTheFirstSite) {
   EXPECT_THAT(shown, IsEmpty());
   std::this_thread::sleep_for(std::chrono::milliseconds(250));  // progress is shown so often
   sink(PreloadStep{12, 0.5, 0});
-  EXPECT_THAT(shown, HasSubstr("\rprecompute: equilibrium under the weight, 12 steps, 50 % of it "
-                               "carried\x1b[K"));
+  EXPECT_THAT(shown, HasSubstr("\rprecompute: equilibrium under the weight, step 12, 50 % of the "
+                               "weight reached\x1b[K"));
   std::this_thread::sleep_for(std::chrono::milliseconds(250));
   sink(PreloadStep{30, 0, 4});
-  EXPECT_THAT(shown, HasSubstr("\rprecompute: shape without weight, 4 shapes tried, 30 steps"));
+  EXPECT_THAT(shown, HasSubstr("\rprecompute: shape without weight, step 30, 4 shapes tried"));
   EXPECT_THAT(text_of({PreloadStep{1, 0, 0}}), IsEmpty());  // a line every ten seconds
 }
 
