@@ -52,8 +52,10 @@ PartialWeight::PartialWeight(const SolidModel& model, const std::vector<int>& pe
 }
 
 bool PartialWeight::factorize_in(Precision precision) {
-  const int threads =
-      threads_that_fit(resources_, [&](int t) { return factor_.bytes(precision, t); });
+  // Once: later the resident memory holds this factor and its fronts.
+  int& threads = precision == Precision::Single ? threads_in_single_ : threads_in_double_;
+  if (threads == 0)
+    threads = threads_that_fit(resources_, [&](int t) { return factor_.bytes(precision, t); });
   return factor_.factorize(K_, precision, threads);
 }
 

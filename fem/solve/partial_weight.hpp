@@ -86,6 +86,7 @@ class PartialWeight {
   PreloadCounter* counter_;
   PartialFactor factor_;
   Precision precision_ = Precision::Single;
+  int threads_in_single_ = 0, threads_in_double_ = 0;  ///< 0: not yet chosen
   std::vector<double> K_;
 
   /// The state to which steps that lower nothing are taken back.

@@ -76,6 +76,24 @@ TEST(PartialWeight, IsThatOfASmallerGravity) {
   EXPECT_GT(u.norm(), 1e-4);
 }
 
+/// The factor of the first step is in the resident memory when the second begins: what it needs is
+/// not asked for twice.
+TEST(PartialWeight, TakesItsMemoryOnce) {
+  const Body block =
+      test::make_block(test::even(0, 0.05, 9), test::even(0, 0.05, 9), test::even(0, 0.05, 9));
+  const SolidModel model(block, {make_law({3e3, 0.45}, "t")}, Dilatation::Mean,
+                         Gravity{{1, 0, -9.81}, kDensity});
+  const std::vector<int> permutation = nested_dissection(model.pattern());
+  const double factor =
+      PartialFactor(model.pattern(), &permutation, {}).bytes(Precision::Single, 1);
+  const double matrix = sizeof(double) * static_cast<double>(model.pattern().nonzeros());
+  ASSERT_GT(factor, 2 * matrix);
+  Displacement u = Displacement::Zero(3, model.mesh().nodes());
+  PartialWeight body(model, permutation, {resident_bytes() + 1.2 * factor + matrix, 1});
+  ASSERT_EQ(body.equilibrate(1, u), PartialWeight::Outcome::Found);
+  EXPECT_GT(body.iterations(), 2);
+}
+
 /// The weakest mode of a rod is its bending, and tension stiffens it.
 TEST(PartialWeight, FindsTheWeakestMode) {
   const LevelRod rod(0.5);
