@@ -96,9 +96,9 @@ CampaignContext::Preloaded CampaignContext::preloaded(const Body& body,
                         ? *known
                         : computed_preload(body, settings, gravity, laws, model, permutation);
   if (cache != nullptr && known == nullptr) cache->preloads.keep(settings, preload);
-  const auto unloaded = preload.unloaded;
-  return {unloaded ? unloaded->model : std::move(model), std::move(permutation),
-          std::move(preload)};
+  if (const auto unloaded = preload.unloaded)
+    return {unloaded->model, std::move(permutation), std::move(preload)};
+  return {std::move(model), std::move(permutation), std::move(preload)};
 }
 
 CampaignContext::CampaignContext(const Body& b, const CampaignSettings& settings, Engine e,
