@@ -78,6 +78,7 @@ double median_of(std::vector<double> values) {
 /// they stay unknown or there is no such path.
 double bound_paths(Curves& curves, PathKind kind, const IsChosen& chosen) {
   std::vector<Difference> all = differences(curves, kind, chosen);
+  const auto count = static_cast<double>(std::min(kDifferencesOfBound, all.size()));
   if (all.empty()) all = differences(curves, kind, [](const SiteCurves&) { return true; });
   if (all.empty()) return kUnknown;
   bool any = false;
@@ -92,7 +93,6 @@ double bound_paths(Curves& curves, PathKind kind, const IsChosen& chosen) {
             i == 0 ? 0 : bound_at(resolution_of(sample), all) * scale_of(path, sample, largest);
       }
     }
-  const double count = static_cast<double>(std::min(kDifferencesOfBound, all.size()));
   return any ? count / (count + 1) : kUnknown;
 }
 

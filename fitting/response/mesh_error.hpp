@@ -22,7 +22,7 @@ inline constexpr std::size_t kDifferencesOfBound = 19;
 /// it is that of the kind that has the fewest.
 /// `at_edge`: for each response vertex whether it is pressed at a sharp edge; empty: none is. Sites
 /// at edges are bounded by the differences there, the others by theirs; by all of them where their
-/// own kind of site has none.
+/// own kind of site has none, which is worth no confidence: it is 0.
 void bound_mesh_errors(Curves& curves, const std::vector<bool>& at_edge = {});
 
 /// Median and largest mesh_error of the paths of a kind, relative as above: at their ends, and at

@@ -50,6 +50,22 @@ TEST(FirstTouch, OfANarrowHollowIsAboveThePoint) {
   EXPECT_GT(contact.penetration_of(touch.tool, context.rest), 0);
 }
 
+/// A site with refined elements, before the touch.
+struct RefinedSite {
+  RefinedSite(const CampaignContext& context, const PressPoint& point)
+      : body(site_body_at(context, point, SiteMesh::RefinedWindow)),
+        contact(contact_at(context, body.mesh(), context.reference_position(point.position))) {
+    SolvePool pool(*context.rest_factor, 1);
+    SolvePool::Member member(pool);
+    SiteEquilibrium equilibrium(context, body, &member);
+    rest = site_at_rest(context, body, contact, equilibrium, point);
+  }
+
+  SiteBody body;
+  ToolContact contact;
+  SiteAtRest rest;
+};
+
 /// Elements of half the size sag further than those of the campaign.
 TEST(SiteAtRest, OfRefinedElementsIsInEquilibriumWithTheWeight) {
   const Body block = test::make_block(test::even(-0.01, 0.01, 4), test::even(-0.01, 0.01, 4),
@@ -60,13 +76,8 @@ TEST(SiteAtRest, OfRefinedElementsIsInEquilibriumWithTheWeight) {
   const CampaignContext context(block, s, Engine::SharedFactor);
   const std::int32_t site = test::site_nearest(block);
   const PressPoint point = context.press_point(site);
-  const SiteBody body = site_body_at(context, point, SiteMesh::RefinedWindow);
-  const ToolContact contact =
-      contact_at(context, body.mesh(), context.reference_position(point.position));
-  SolvePool pool(*context.rest_factor, 1);
-  SolvePool::Member member(pool);
-  SiteEquilibrium equilibrium(context, body, &member);
-  const SiteAtRest rest = site_at_rest(context, body, contact, equilibrium, point);
+  const RefinedSite refined(context, point);
+  const auto& [body, contact, rest] = refined;
   ASSERT_EQ(rest.failure, "");
   Eigen::VectorXd before, after;
   const SolidModel::State given = body.whole().forces(body.rest(), before);
@@ -97,16 +108,11 @@ TEST(SiteAtRest, OfALimpNearlyIncompressibleColumnIsFound) {
   const double lean = context.rest.row(0).maxCoeff();
   EXPECT_GT(lean, 0.01);
   const PressPoint point = context.press_point(test::site_nearest(column));
-  const SiteBody body = site_body_at(context, point, SiteMesh::RefinedWindow);
-  const ToolContact contact =
-      contact_at(context, body.mesh(), context.reference_position(point.position));
-  SolvePool pool(*context.rest_factor, 1);
-  SolvePool::Member member(pool);
-  SiteEquilibrium equilibrium(context, body, &member);
-  const SiteAtRest rest = site_at_rest(context, body, contact, equilibrium, point);
+  const RefinedSite refined(context, point);
+  const SiteAtRest& rest = refined.rest;
   EXPECT_EQ(rest.failure, "");
   Eigen::VectorXd residual;
-  body.whole().forces(rest.u, residual);
+  refined.body.whole().forces(rest.u, residual);
   EXPECT_LT(residual.norm(), 6e-6 * context.model.weight_norm());
   EXPECT_NEAR(rest.u.row(0).maxCoeff(), lean, 0.1 * lean);
 }

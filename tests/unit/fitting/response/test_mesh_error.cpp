@@ -99,6 +99,7 @@ TEST(MeshError, AtSharpEdgesIsThatOfSitesThere) {
   // No site at an edge was pressed twice: those of all are the best that is known.
   bound_mesh_errors(curves, {false, false, true, false});
   EXPECT_NEAR(relative_error(curves.sites[2], 5), 0.2, 1e-12);
+  EXPECT_EQ(curves.mesh_error_confidence, 0);
 }
 
 TEST(MeshError, OfFewDifferencesHasALowerConfidence) {
