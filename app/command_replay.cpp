@@ -48,14 +48,14 @@ int replay_recording(const ReplayOptions& options) {
     for (RecordedStep& step : steps) {
       const RecordedStep again = model.step(step);
       if (!found) found = difference(step, again, number);
-      if (found && !writer) refuse(*found, recorded.heading(), options.recording);
+      if (found && !writer) refuse_difference(*found, recorded.heading(), options.recording);
       step = again;
       ++number;
     }
     if (writer) writer->append(steps);
   }
   if (writer) writer->commit();
-  if (found) refuse(*found, recorded.heading(), options.recording);
+  if (found) refuse_difference(*found, recorded.heading(), options.recording);
   say("replay: {} steps; forces, energies and contact points are identical to the bit", number);
   return kExitDone;
 }

@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-const char* kind_name(PathKind kind) {
+const char* press_name(PathKind kind) {
   return kind == PathKind::Normal ? "normal" : "oblique";
 }
 
@@ -43,7 +43,7 @@ std::string fidelity_states_csv(const std::string& file, const fidelity::Fidelit
   }
   for (const fidelity::ComparedState& s : fidelity.states) {
     fmt::format_to(std::back_inserter(csv), "{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", file,
-                   s.point, kind_name(s.kind), s.depth, s.lateral, s.direct[0], s.direct[1],
+                   s.point, press_name(s.kind), s.depth, s.lateral, s.direct[0], s.direct[1],
                    s.direct[2], s.rendered[0], s.rendered[1], s.rendered[2], s.scale, s.total(),
                    s.within_friction ? 1 : 0);
   }

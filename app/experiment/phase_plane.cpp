@@ -15,17 +15,17 @@ namespace {
 
 using svg::label, svg::line, svg::rectangle;
 
-constexpr double kWidth = 420, kHeight = 340;  // of a panel, in units of the picture
+constexpr double kPanelWidth = 420, kPanelHeight = 340;  // of a panel, in units of the picture
 constexpr double kLeft = 56, kRight = 10, kAbove = 34, kBelow = 46;  // beside its frame
 constexpr double kLowX = -0.035, kHighX = 0.035;                     // m
 constexpr double kFastest = 1.2;                                     // m/s
 constexpr std::size_t kMostPoints = 20000;
 
 double across(double position) {
-  return kLeft + (kWidth - kLeft - kRight) * (position - kLowX) / (kHighX - kLowX);
+  return kLeft + (kPanelWidth - kLeft - kRight) * (position - kLowX) / (kHighX - kLowX);
 }
 double down(double velocity) {
-  return kAbove + (kHeight - kAbove - kBelow) * (1 - velocity / kFastest) / 2;
+  return kAbove + (kPanelHeight - kAbove - kBelow) * (1 - velocity / kFastest) / 2;
 }
 
 /// The frame, numbers outside of it where no curve hides them, and where the body is.
@@ -71,12 +71,13 @@ std::string curve(const std::vector<PhasePoint>& path) {
 void write_phase_planes(const std::filesystem::path& file, const std::vector<PhasePlane>& planes) {
   std::string panels;
   for (std::size_t i = 0; i < planes.size(); ++i) {
-    panels += fmt::format("<g transform=\"translate({},0)\">\n", kWidth * static_cast<double>(i));
+    panels +=
+        fmt::format("<g transform=\"translate({},0)\">\n", kPanelWidth * static_cast<double>(i));
     panels += axes() + curve(planes[i].path) + frame() +
               label((across(kLowX) + across(kHighX)) / 2, 20, planes[i].title) + "\n</g>\n";
   }
   write_file_crash_safely(
-      file, svg::picture(kWidth * static_cast<double>(planes.size()), kHeight, panels));
+      file, svg::picture(kPanelWidth * static_cast<double>(planes.size()), kPanelHeight, panels));
 }
 
 void write_phase_csv(const std::filesystem::path& file, const std::vector<PhasePoint>& path) {

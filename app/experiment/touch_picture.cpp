@@ -13,7 +13,6 @@ namespace palpate::app {
 namespace {
 
 using runtime::Element;
-using runtime::Surface;
 
 constexpr double kWidth = 560, kHeight = 330;  // of the picture, in its units
 constexpr double kScale = 2200;                // units per metre
@@ -52,7 +51,8 @@ class View {
   Vec3 right_{}, up_{};
 };
 
-std::string patch(const View& view, const Surface& surface, const Element& e, bool active) {
+std::string patch(const View& view, const runtime::Surface& surface, const Element& e,
+                  bool active) {
   std::string corners;
   for (std::size_t l = 0; l < 3; ++l) {
     const Vec3& x = surface.vertex(e, l);
@@ -65,7 +65,7 @@ std::string patch(const View& view, const Surface& surface, const Element& e, bo
                      corners, fill);
 }
 
-std::string patches(const View& view, const Surface& surface, std::int32_t active) {
+std::string patches(const View& view, const runtime::Surface& surface, std::int32_t active) {
   std::string shapes;
   for (std::int32_t m = 0; m < surface.element_count(); ++m) {
     const Element& e = surface.element(m);
@@ -100,7 +100,7 @@ void write_touch_picture(const std::filesystem::path& file, const SlingshotSetup
   slingshot::LineOfTouch line(setup, k);
   for (double x = -kStep; x < depth; x += kStep) line.force(x);
   line.force(depth);
-  const Surface& surface = line.body()->surface;
+  const runtime::Surface& surface = line.body()->surface;
   const View view(0.5 * (surface.low() + surface.high()));
   const std::string title =
       fmt::format("{} patches, k = {:g} N/m, {:g} mm off the axis, mu = {:g}, {:g} mm deep",

@@ -70,9 +70,9 @@ std::string law_card(const fem::LawConstants& c) {
   return {};
 }
 
-class Writer {
+class CalculixWriter {
  public:
-  explicit Writer(const Deck& deck) : deck_(deck) {}
+  explicit CalculixWriter(const Deck& deck) : deck_(deck) {}
 
   std::string write() {
     add("*HEADING\n{}\n** SI units: m, N, Pa\n", deck_.title);
@@ -200,7 +200,7 @@ std::string calculix_deck(const Deck& deck) {
   if (deck.relaxes())
     refuse("site", "CalculiX has no law that relaxes by a series, and tissue of the case does",
            "export for FEBio (--febio), or a case without relaxation");
-  return Writer(deck).write();
+  return CalculixWriter(deck).write();
 }
 
 }  // namespace palpate::app

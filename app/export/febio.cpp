@@ -76,9 +76,9 @@ std::vector<double> times_of_hold(double hold) {
   return times;
 }
 
-class Writer {
+class FebioWriter {
  public:
-  explicit Writer(const Deck& deck)
+  explicit FebioWriter(const Deck& deck)
       : deck_(deck),
         press_(deck.pace ? deck.pace->press : 1),
         hold_(deck.pace ? deck.pace->hold : 0) {}
@@ -385,7 +385,7 @@ std::string febio_deck(const Deck& deck) {
     throw Error(ErrorKind::Configuration, "tool", "FEBio decks have contact without friction",
                 "export for CalculiX (--calculix), or a press without friction");
   check_relaxation_of(deck);
-  return Writer(deck).write();
+  return FebioWriter(deck).write();
 }
 
 }  // namespace palpate::app

@@ -115,7 +115,8 @@ std::optional<Difference> first_difference(const Recording& recorded, const Reco
   return {};
 }
 
-void refuse(const Difference& found, const RecordingHeading& recorded, const std::string& file) {
+void refuse_difference(const Difference& found, const RecordingHeading& recorded,
+                       const std::string& file) {
   const bool threaded = recorded.settings.search_rate > 0;
   throw Error(
       ErrorKind::Internal, fmt::format("{}, step {}", file, found.step),

@@ -45,7 +45,7 @@ std::optional<Difference> difference(const RecordedStep& recorded, const Recorde
 std::optional<Difference> first_difference(const Recording& recorded, const Recording& replayed);
 
 /// @throws Error(Configuration) that names the difference and its possible causes.
-[[noreturn]] void refuse(const Difference& found, const RecordingHeading& recorded,
-                         const std::string& file);
+[[noreturn]] void refuse_difference(const Difference& found, const RecordingHeading& recorded,
+                                    const std::string& file);
 
 }  // namespace palpate::app

@@ -5,7 +5,7 @@
 namespace palpate::report {
 namespace {
 
-[[noreturn]] void refuse(const char* problem) {
+[[noreturn]] void refuse_comparison(const char* problem) {
   throw Error(ErrorKind::Configuration, "comparison.json", problem,
               "write it again with `palpate compare`, or remove it from the folder");
 }
@@ -17,13 +17,13 @@ nlohmann::json comparison_data(const std::string& text, std::size_t vertices) {
   nlohmann::json data = nlohmann::json::parse(text, nullptr, false);
   if (data.is_discarded() || !data.is_object() ||
       data.value("artifact", "") != "palpate.comparison" || data.value("schema", 0) != 1) {
-    refuse("this version cannot read it");
+    refuse_comparison("this version cannot read it");
   }
-  if (!data.contains("curves") || !data["curves"].is_array()) refuse("it has no curves");
+  if (!data.contains("curves") || !data["curves"].is_array()) refuse_comparison("it has no curves");
   for (const auto& curve : data["curves"]) {
     const auto vertex = curve.value("vertex", -1);
     if (vertex < 0 || static_cast<std::size_t>(vertex) >= vertices) {
-      refuse("a vertex in it is not in the library");
+      refuse_comparison("a vertex in it is not in the library");
     }
   }
   return data;

@@ -7,7 +7,7 @@ namespace {
 
 using nlohmann::json;
 
-[[noreturn]] void refuse(const char* problem) {
+[[noreturn]] void refuse_fidelity(const char* problem) {
   throw Error(ErrorKind::Configuration, "fidelity.json", problem,
               "write it again with `palpate compare --fem`, or remove it from the folder");
 }
@@ -33,13 +33,13 @@ json fidelity_data(const std::string& text, const std::string& library_sha256) {
   if (fidelity.is_discarded() || !fidelity.is_object() ||
       fidelity.value("kind", json()) != "palpate.fidelity" || !fidelity.contains("points") ||
       !fidelity.contains("libraries") || !fidelity["libraries"].is_array()) {
-    refuse("this version cannot read it");
+    refuse_fidelity("this version cannot read it");
   }
   for (const json& library : fidelity["libraries"]) {
     if (library.value("sha256", "") != library_sha256) continue;
     const json rows = library.value("rows", json::array());
     for (const json& row : rows)
-      if (!is_row(row)) refuse("a row is incomplete");
+      if (!is_row(row)) refuse_fidelity("a row is incomplete");
     const std::size_t at_nodes = points_at_nodes(fidelity["points"]);
     return {{"floor", fidelity.value("floor_N", 0.0)},
             {"friction", fidelity.value("friction", 0.0)},

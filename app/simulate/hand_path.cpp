@@ -7,8 +7,6 @@
 namespace palpate::app {
 namespace {
 
-constexpr double kPeakOverMean = 1.5;  ///< of the speed of smooth()
-
 /// From 0 to 1 with rest at both ends.
 double smooth(double fraction) {
   const double s = std::clamp(fraction, 0.0, 1.0);

@@ -14,6 +14,9 @@ struct HandState {
   Vec3 velocity{};  ///< m/s
 };
 
+/// Peak of the speed along each part of the path over its mean.
+inline constexpr double kPeakOverMean = 1.5;
+
 /// The scripted path of the hand: from above the surface, as high as the press is deep, down to the
 /// press depth, a rest, along the surface at that depth, and up again. Each part starts and ends at
 /// rest; the speed of the script is its peak.

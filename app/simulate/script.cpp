@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/simulate/hand_path.hpp"
 #include "app/simulate/surface_path.hpp"
 #include "format/error.hpp"
 #include "format/numbers.hpp"
@@ -16,8 +17,7 @@ namespace {
 
 constexpr double kPressOverDepth = 0.5;
 constexpr double kSlideOverDiagonal = 0.5;
-constexpr double kPressTime = 1, kSlideTime = 2;  // s, at the peak of the speed all the way
-constexpr double kPeakOverMean = 1.5;
+constexpr double kPressTime = 1, kSlideTime = 2;       // s, at the peak of the speed all the way
 constexpr double kHoldOverTime = 2, kLongestHold = 5;  // s
 // The device of [Mahvash & Hayward 2005, section VI] on the stiffest wall that it renders, 170 N/m:
 // 84.5 g, 0.081 N s/m and 10 mN, rounded.

@@ -16,7 +16,8 @@ namespace palpate::fem {
 
 namespace {
 
-[[noreturn]] void refuse(const Body& body, const std::string& problem, const std::string& remedy) {
+[[noreturn]] void refuse_body(const Body& body, const std::string& problem,
+                              const std::string& remedy) {
   throw Error(ErrorKind::Configuration, body.name, problem, remedy);
 }
 
@@ -24,11 +25,11 @@ namespace {
 Body with_fixed_patch(const Body& body, std::int32_t vertex, double radius) {
   const auto count = static_cast<std::int32_t>(body.response.node.size());
   if (vertex < 0 || vertex >= count || body.response.is_site[to_index(vertex)] == 0)
-    refuse(body, "response vertex " + std::to_string(vertex) + " is not a site",
-           "choose a vertex outside the supports, from 0 to " + std::to_string(count - 1));
+    refuse_body(body, "response vertex " + std::to_string(vertex) + " is not a site",
+                "choose a vertex outside the supports, from 0 to " + std::to_string(count - 1));
   if (!(std::isfinite(radius) && radius > 0))
-    refuse(body, "the radius of the patch is " + std::to_string(radius) + " m",
-           "give a finite radius > 0");
+    refuse_body(body, "the radius of the patch is " + std::to_string(radius) + " m",
+                "give a finite radius > 0");
   const Vec3& site = body.nodes[to_index(body.response.node[to_index(vertex)])];
   std::vector<bool> in_patch(body.nodes.size(), false);
   for (const Triangle& facet : body.boundary)
@@ -36,7 +37,7 @@ Body with_fixed_patch(const Body& body, std::int32_t vertex, double radius) {
       in_patch[to_index(node)] = norm(body.nodes[to_index(node)] - site) <= radius * (1 + 1e-9);
   for (const std::int32_t node : body.fixed_nodes)
     if (in_patch[to_index(node)])
-      refuse(body, "the patch reaches a support", "give a smaller radius or another site");
+      refuse_body(body, "the patch reaches a support", "give a smaller radius or another site");
   Body fixed = body;
   for (std::size_t node = 0; node < in_patch.size(); ++node)
     if (in_patch[node]) fixed.fixed_nodes.push_back(static_cast<std::int32_t>(node));

@@ -19,8 +19,6 @@ namespace palpate::fem {
 
 namespace {
 
-/// What is nearer than this to a no-slip tool at first touch is bonded to it, over its radius.
-constexpr double kTouching = 1e-6;
 /// Error of the force before what a no-slip tool met is bonded to it, over the wanted one: where it
 /// was met is known well enough, and another equilibrium follows. Where either is not found, the
 /// increment begins again with the wanted error.
@@ -39,10 +37,6 @@ double thread_cpu_seconds() {
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-bool same_depth(double a, double b) {
-  return std::abs(a - b) < 1e-9 * b;
 }
 
 /// Depths of the increments: evenly spaced, with the stops among them.

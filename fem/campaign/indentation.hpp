@@ -3,6 +3,7 @@
 // tangents at constant depth without slip.
 #pragma once
 
+#include <cmath>
 #include <functional>
 #include <vector>
 
@@ -21,6 +22,11 @@ struct LateralPlan {
   Vec3 direction{};             ///< unit, normal to inward
   std::vector<double> travels;  ///< m, ascending, without the 0 of the start
 };
+
+/// Whether two depths of a path are one but for rounding.
+inline bool same_depth(double a, double b) {
+  return std::abs(a - b) < 1e-9 * b;
+}
 
 /// The paths of one site.
 struct SitePlan {

@@ -19,7 +19,7 @@ constexpr double kWindowRadius = 2;
 /// A bound on how often the contact divides an element.
 constexpr int kMaxLevels = 12;
 
-using Corners = std::array<Eigen::Vector3d, 4>;
+using TetCorners = std::array<Eigen::Vector3d, 4>;
 
 /// Distance of a point from a segment.
 double distance(const Eigen::Vector3d& x, const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
@@ -41,7 +41,7 @@ double distance(const Eigen::Vector3d& x, const std::array<Eigen::Vector3d, 3>& 
 }
 
 /// Distance of a point outside of a tetrahedron, or on its boundary.
-double distance(const Eigen::Vector3d& x, const Corners& corner) {
+double distance(const Eigen::Vector3d& x, const TetCorners& corner) {
   double nearest = std::numeric_limits<double>::infinity();
   for (std::size_t without = 0; without < 4; ++without)
     nearest = std::min(nearest,
@@ -69,7 +69,7 @@ std::vector<int> elements_near(const QuadraticMesh& mesh, const Eigen::Vector3d&
 }
 
 /// The edge of the regular tetrahedron with the same sum of squared edges.
-double size_of(const Corners& corner) {
+double size_of(const TetCorners& corner) {
   double squares = 0;
   for (const auto& [i, j] : kTetEdges) squares += (corner[i] - corner[j]).squaredNorm();
   return std::sqrt(squares / 6);
@@ -88,7 +88,7 @@ class Division {
     if (refinement_.levels > 0) elements = elements_near(mesh_, site_, reach_);
     if (by_contact) add_too_large(elements);
     return refine_elements(mesh_, elements, by_contact ? kMaxLevels : refinement_.levels,
-                           [this](const Corners& corners, int level) {
+                           [this](const TetCorners& corners, int level) {
                              return asked_by_levels(corners, level) || too_large(corners);
                            });
   }
@@ -104,7 +104,7 @@ class Division {
     elements.erase(std::unique(elements.begin(), elements.end()), elements.end());
   }
 
-  bool asked_by_levels(const Corners& corners, int level) const {
+  bool asked_by_levels(const TetCorners& corners, int level) const {
     if (level >= refinement_.levels) return false;
     const int halvings = std::max(0, level - (refinement_.first_levels - 1));
     return distance(site_, corners) <= std::ldexp(reach_, -halvings);
@@ -115,12 +115,12 @@ class Division {
            refinement_.growth_outside * std::max(0.0, s - core.largest);
   }
 
-  bool too_large(const Corners& corners) const {
+  bool too_large(const TetCorners& corners) const {
     return std::any_of(refinement_.cores.begin(), refinement_.cores.end(),
                        [&](const ContactCore& core) { return too_large(corners, core); });
   }
 
-  bool too_large(const Corners& corners, const ContactCore& core) const {
+  bool too_large(const TetCorners& corners, const ContactCore& core) const {
     const double size = size_of(corners);
     const Eigen::Vector3d centre = 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
     const Eigen::Vector3d nearest = core.nearest(centre);

@@ -11,10 +11,6 @@
 namespace palpate::fem {
 namespace {
 
-bool same_depth(double a, double b) {
-  return std::abs(a - b) < 1e-9 * b;
-}
-
 bool among(const std::vector<double>& depths, double depth) {
   return std::any_of(depths.begin(), depths.end(), [&](double d) { return same_depth(depth, d); });
 }

@@ -12,6 +12,9 @@
 
 namespace palpate::fem {
 
+/// What is nearer than this to a no-slip tool at first touch is bonded to it, over its radius.
+inline constexpr double kTouching = 1e-6;
+
 /// Scales of the contact penalty and of the ties.
 struct ContactStiffness {
   double contact;  ///< eps, N/m^3, of the surface against the tool

@@ -15,8 +15,8 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-[[noreturn]] void refuse(const char* size, double value, const std::string& range,
-                         const std::string& remedy) {
+[[noreturn]] void refuse_size(const char* size, double value, const std::string& range,
+                              const std::string& remedy) {
   throw Error(ErrorKind::Configuration, "tool",
               std::string(size) + " = " + length_text(value) + " is out of range",
               "give " + range + remedy);
@@ -99,15 +99,16 @@ std::string name_of(ToolFriction friction) {
 
 void check_tool(const ToolGeometry& g) {
   if (!(std::isfinite(g.radius) && g.radius > 0))
-    refuse("tool_radius", g.radius, "a finite radius > 0", "");
+    refuse_size("tool_radius", g.radius, "a finite radius > 0", "");
   if (g.shape != ToolShape::Disc && g.edge_radius != 0)
-    refuse("edge_radius", g.edge_radius, "no edge_radius", ": only a disc has an edge");
+    refuse_size("edge_radius", g.edge_radius, "no edge_radius", ": only a disc has an edge");
   if (!(g.edge_radius >= 0 && g.edge_radius <= g.radius))
-    refuse("edge_radius", g.edge_radius, "0 (a sharp edge) to the radius", " of the disc");
+    refuse_size("edge_radius", g.edge_radius, "0 (a sharp edge) to the radius", " of the disc");
   if (g.shape != ToolShape::Cylinder && g.length != 0)
-    refuse("length", g.length, "no length", ": only a cylinder has a length");
+    refuse_size("length", g.length, "no length", ": only a cylinder has a length");
   if (g.shape == ToolShape::Cylinder && !(std::isfinite(g.length) && g.length > 0))
-    refuse("length", g.length, "a finite length > 0", " between the centres of the rounded ends");
+    refuse_size("length", g.length, "a finite length > 0",
+                " between the centres of the rounded ends");
 }
 
 double Tool::distance(const Vector3d& x) const {

@@ -21,8 +21,6 @@ namespace {
 /// Residual that counts as none, over the allowed one at the largest force so far: a tool that has
 /// let go has no force to compare with.
 constexpr double kRoundOff = 0.1;
-/// What is nearer than this to a no-slip tool at first touch is bonded to it, over its radius.
-constexpr double kTouching = 1e-6;
 /// A time step that fails is halved down to this part of its piece of the motion.
 constexpr double kSmallestPart = 1e-7;
 /// Part of the shortest time of relaxation with which the motion begins.

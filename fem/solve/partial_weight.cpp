@@ -12,7 +12,7 @@ namespace palpate::fem {
 namespace {
 
 constexpr double kResidualTolerance = 1e-9;  ///< residual over the weight
-constexpr int kNewtonSteps = 60;
+constexpr int kWeightNewtonSteps = 60;
 constexpr int kFreeSteps = 4;
 constexpr int kStepHalvings = 12;     ///< of a step
 constexpr double kArmijo = 1e-4;      ///< decrease of the energy over that along the slope
@@ -177,7 +177,7 @@ PartialWeight::Outcome PartialWeight::equilibrate(double part, Displacement& u) 
   State now = evaluate(part, u);
   if (!(now.min_J > 0)) return Outcome::Inverted;
   free_steps_ = 0;
-  for (iterations_ = 0; iterations_ < kNewtonSteps; ++iterations_) {
+  for (iterations_ = 0; iterations_ < kWeightNewtonSteps; ++iterations_) {
     if (is_equilibrium(now, u)) return Outcome::Found;
     std::optional<Outcome> failure = free_step(part, now, u);
     if (failure && free_steps_ > 0) failure = step_from_checkpoint(part, now, u);

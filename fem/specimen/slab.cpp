@@ -14,13 +14,13 @@ namespace palpate::fem {
 
 namespace {
 
-constexpr int kSectors = 12;  ///< of the whole slab
+constexpr int kSlabSectors = 12;  ///< of the whole slab
 /// Cells under the tool, over its radius; they grow outside.
-constexpr double kFine = 0.12, kFineDeep = 0.15, kGrowth = 1.4;
+constexpr double kFine = 0.12, kFineDeep = 0.15, kSlabGrowth = 1.4;
 /// Half the width of the slab: so many radii and thicknesses.
 constexpr double kRadii = 8, kThicknesses = 2;
 /// Stiffness of the planes of symmetry, over the shear modulus and the radius.
-constexpr double kPlanes = 1e5;
+constexpr double kSlabPlanes = 1e5;
 
 void check(const SlabPress& press) {
   const std::string where = "press of a slab";
@@ -37,13 +37,14 @@ void check(const SlabPress& press) {
 }
 
 Body sector(const SlabPress& press, double shear_modulus) {
-  const double R = press.tool.radius, H = press.thickness, angle = 2 * std::numbers::pi / kSectors;
+  const double R = press.tool.radius, H = press.thickness,
+               angle = 2 * std::numbers::pi / kSlabSectors;
   const double deepest = press.depths.back();
   const double contact = std::sqrt(deepest * std::max(2 * R - deepest, R));
   const double border = kRadii * R + kThicknesses * H;
-  CellGrid grid{graded_cells(border, 1.3 * contact, kFine * contact, kGrowth),
+  CellGrid grid{graded_cells(border, 1.3 * contact, kFine * contact, kSlabGrowth),
                 {0, angle},
-                graded_cells(H, contact, kFineDeep * contact, kGrowth)};
+                graded_cells(H, contact, kFineDeep * contact, kSlabGrowth)};
   // From the base up, with the fine cells at the surface.
   std::reverse(grid.third.begin(), grid.third.end());
   for (double& z : grid.third) z = H - z;
@@ -52,7 +53,7 @@ Body sector(const SlabPress& press, double shear_modulus) {
   });
   const double near = 1e-9 * border;
   fix_where(body, [&](const Vec3& x) { return x[2] < near; });
-  const double stiffness = kPlanes * shear_modulus / R;
+  const double stiffness = kSlabPlanes * shear_modulus / R;
   slide_where(
       body, [&](const Vec3& x) { return x[1] < near; }, stiffness);
   slide_where(
@@ -91,7 +92,7 @@ SlabForces press_slab(const SlabPress& press) {
   forces.reason = curves.reason;
   for (const CurveSample& sample : curves.paths.front().samples)
     if (is_among(sample.displacement, press.depths))
-      forces.force.push_back(-kSectors * sample.force[2]);
+      forces.force.push_back(-kSlabSectors * sample.force[2]);
   return forces;
 }
 

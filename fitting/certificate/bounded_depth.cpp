@@ -10,8 +10,9 @@
 namespace palpate::fitting {
 namespace {
 
-constexpr int kBisections = 6;
-constexpr int kHalvingsPerVisit = 500, kMaxHalvings = 5000;  // of sets of states of one triangle
+constexpr int kDepthBisections = 6;
+constexpr int kStateHalvingsPerVisit = 500,
+              kMaxStateHalvings = 5000;  // of sets of states of one triangle
 
 /// Whether the slides over a triangle have a bound; false where the search does not find one.
 bool has_bound(const Library& library, std::size_t triangle, double depth, double friction) {
@@ -19,9 +20,9 @@ bool has_bound(const Library& library, std::size_t triangle, double depth, doubl
   if (std::isfinite(slide_bound(element).total)) return true;
   if (!(friction > 0)) return false;
   SlideSearch search(element);
-  while (search.spent() < kMaxHalvings) {
+  while (search.spent() < kMaxStateHalvings) {
     const int before = search.spent();
-    search.advance(kHalvingsPerVisit, 0);
+    search.advance(kStateHalvingsPerVisit, 0);
     if (std::isinf(search.attained())) return false;
     if (std::isfinite(search.bound())) return true;
     if (search.spent() == before) break;
@@ -38,7 +39,7 @@ double bounded_depth(const Library& library, const std::vector<TriangleBounds>& 
     if (std::isfinite(bounds[m].certificate.slip)) continue;
     if (common < depth && has_bound(library, m, common, friction)) continue;
     double low = 0, high = common;
-    for (int i = 0; i < kBisections; ++i) {
+    for (int i = 0; i < kDepthBisections; ++i) {
       const double middle = 0.5 * (low + high);
       (has_bound(library, m, middle, friction) ? low : high) = middle;
     }

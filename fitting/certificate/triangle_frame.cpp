@@ -13,7 +13,7 @@ namespace {
 
 using Corners = std::array<Vec3, 3>;
 
-[[noreturn]] void refuse(std::size_t index, const Corners& x, const std::string& problem) {
+[[noreturn]] void refuse_triangle(std::size_t index, const Corners& x, const std::string& problem) {
   const Vec3 centre = (1.0 / 3) * (x[0] + x[1] + x[2]);
   std::array<char, 128> where{};
   std::snprintf(where.data(), where.size(), "response triangle %zu near (%.6g, %.6g, %.6g) m",
@@ -86,7 +86,7 @@ TriangleFrame triangle_frame(const Library& library, std::size_t index) {
   const Corners u = corners_of(library.inward, library.triangles[index]);
   const Vec3 outward = cross(x[1] - x[0], x[2] - x[0]);
   const double twice_area = norm(outward);
-  if (!(twice_area > 0)) refuse(index, x, "the triangle has no area");
+  if (!(twice_area > 0)) refuse_triangle(index, x, "the triangle has no area");
   const Vec3 N = (-1 / twice_area) * outward;
 
   TriangleFrame frame;
@@ -99,14 +99,16 @@ TriangleFrame triangle_frame(const Library& library, std::size_t index) {
       frame.gradient[l] = -frame.gradient[l];
     }
     if (!(dot(u[l], N) > 0)) {
-      refuse(index, x,
-             "the press direction of vertex " + std::to_string(library.triangles[index][l]) +
-                 " does not point into the facet");
+      refuse_triangle(index, x,
+                      "the press direction of vertex " +
+                          std::to_string(library.triangles[index][l]) +
+                          " does not point into the facet");
     }
   }
   frame.least_length = distance_to_triangle(u);
   if (frame.least_length < 0.5) {
-    refuse(index, x, "the press directions of its vertices differ too much to be interpolated");
+    refuse_triangle(index, x,
+                    "the press directions of its vertices differ too much to be interpolated");
   }
   frame.cos_theta = std::min(1.0, std::min({dot(u[0], N), dot(u[1], N), dot(u[2], N)}));
   double sine = 0;

@@ -87,7 +87,7 @@ class Presses {
 };
 
 using Chosen = std::function<bool(const ComparedState&)>;
-using Error = std::function<double(const ComparedState&, const Vec3& normal)>;
+using StateError = std::function<double(const ComparedState&, const Vec3& normal)>;
 
 double along_normal(const ComparedState& s, const Vec3& n) {
   return dot(s.rendered - s.direct, n);
@@ -111,7 +111,7 @@ class Rows {
       : points_(points), result_(result) {}
 
   void add(const std::string& what, const std::string& part, const Chosen& chosen,
-           const Error& error) {
+           const StateError& error) {
     std::vector<Sampled> errors;
     for (const ComparedState& s : result_.states) {
       if (!chosen(s)) continue;

@@ -78,8 +78,8 @@ double weight_at(const std::vector<Level>& levels, double z) {
   return root(levels.back());
 }
 
-CouplingCurve coupling_of(const std::vector<Level>& levels, double depth, int max_knots,
-                          const std::string& where) {
+CouplingCurve fitted_coupling(const std::vector<Level>& levels, double depth, int max_knots,
+                              const std::string& where) {
   CouplingCurve coupling;
   const double first = kMinDepthFraction * depth;
   coupling.base = static_cast<float>(weight_at(levels, first));
@@ -120,7 +120,7 @@ CoupledLateral fit_coupled(const SiteCurves& site, const Vec3& soft_axis, double
     for (Level& level : levels) level.weight /= unit;
     result.lateral = pooled_lateral(levels, lateral, settings, where);
   }
-  result.coupling = coupling_of(levels, depth, settings.max_knots, where);
+  result.coupling = fitted_coupling(levels, depth, settings.max_knots, where);
   return result;
 }
 

@@ -8,7 +8,7 @@ namespace palpate::fitting {
 namespace {
 
 /// Relative distance below which two displacements differ only by rounding.
-constexpr double kSame = 1e-9;
+constexpr double kSamePlace = 1e-9;
 /// Unit vectors whose difference is shorter are one direction.
 constexpr double kSameDirection = 1e-6;
 
@@ -53,8 +53,8 @@ std::vector<ForceSample> samples_of(const CurvePath& path) {
 /// knows it; else NaN.
 double mean_between(const std::vector<ForceSample>& path, double low, double high) {
   for (const ForceSample& sample : path)
-    if (std::abs(sample.displacement - high) <= kSame * high &&
-        std::abs(sample.since - low) <= kSame * high)
+    if (std::abs(sample.displacement - high) <= kSamePlace * high &&
+        std::abs(sample.since - low) <= kSamePlace * high)
       return sample.mean;
   return std::numeric_limits<double>::quiet_NaN();
 }
@@ -100,7 +100,7 @@ std::vector<double> lateral_depths(const SiteCurves& site) {
       depths.push_back(path.lateral_depth);
   }
   std::sort(depths.begin(), depths.end());
-  const auto same = [](double a, double b) { return b - a <= kSame * b; };
+  const auto same = [](double a, double b) { return b - a <= kSamePlace * b; };
   depths.erase(std::unique(depths.begin(), depths.end(), same), depths.end());
   return depths;
 }
@@ -109,7 +109,7 @@ SiteCurves paths_at(const SiteCurves& site, double lateral_depth) {
   SiteCurves there;
   for (const CurvePath& path : site.paths)
     if (path.kind == PathKind::Lateral &&
-        std::abs(path.lateral_depth - lateral_depth) <= kSame * lateral_depth)
+        std::abs(path.lateral_depth - lateral_depth) <= kSamePlace * lateral_depth)
       there.paths.push_back(path);
   return there;
 }
@@ -146,7 +146,7 @@ std::vector<ForceSample> mean_lateral(const std::vector<std::vector<ForceSample>
     for (const ForceSample& sample : path) displacements.push_back(sample.displacement);
   }
   std::sort(displacements.begin(), displacements.end());
-  const auto same = [](double a, double b) { return b - a <= kSame * b; };
+  const auto same = [](double a, double b) { return b - a <= kSamePlace * b; };
   displacements.erase(std::unique(displacements.begin(), displacements.end(), same),
                       displacements.end());
   std::vector<ForceSample> mean;
@@ -155,7 +155,7 @@ std::vector<ForceSample> mean_lateral(const std::vector<std::vector<ForceSample>
     double rise = 0, mean_rise = 0;  // both since the last displacement
     int count = 0;
     for (const auto& path : paths) {
-      if (path.back().displacement < (1 - kSame) * d) continue;
+      if (path.back().displacement < (1 - kSamePlace) * d) continue;
       const double before = interpolate(path, last.displacement);
       rise += interpolate(path, d) - before;
       mean_rise += mean_between(path, last.displacement, d) - before;

@@ -10,8 +10,8 @@
 namespace palpate::fitting {
 namespace {
 
-constexpr double kLeastSpan = 0.01;  // of the weaker direction of the drags, to the stronger
-constexpr double kSame = 1 + 1e-9;
+constexpr double kLeastSpanOfDrags = 0.01;  // of the weaker direction of the drags, to the stronger
+constexpr double kSameAxis = 1 + 1e-9;
 
 /// Two unit vectors across a press direction, as columns.
 Eigen::Matrix<double, 3, 2> plane_across(const Vec3& inward) {
@@ -43,7 +43,7 @@ Eigen::Matrix2d stiffness_of(const SiteCurves& drags, const Eigen::Matrix<double
         plane.transpose() * Eigen::Map<const Eigen::Vector3d>(path.direction.data());
     for (const CurveSample& sample : path.samples) {
       const double d = sample.displacement;
-      if (!(d > 0 && d <= kSame * reach)) continue;
+      if (!(d > 0 && d <= kSameAxis * reach)) continue;
       const Vec3 change = (1 / d) * (sample.force - path.samples.front().force);
       const Eigen::Vector2d force =
           plane.transpose() * Eigen::Map<const Eigen::Vector3d>(change.data());
@@ -56,7 +56,7 @@ Eigen::Matrix2d stiffness_of(const SiteCurves& drags, const Eigen::Matrix<double
   }
   const Eigen::Vector2d strength =
       Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(span).eigenvalues();
-  if (!(strength[0] > kLeastSpan * strength[1])) return Eigen::Matrix2d::Zero();
+  if (!(strength[0] > kLeastSpanOfDrags * strength[1])) return Eigen::Matrix2d::Zero();
   const Eigen::Vector3d k = squares.ldlt().solve(right);
   Eigen::Matrix2d stiffness;
   stiffness << k[0], k[2], k[2], k[1];

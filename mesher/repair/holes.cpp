@@ -18,7 +18,7 @@ namespace pmp = CGAL::Polygon_mesh_processing;
 
 // A hole whose border leaves its mean plane by less than this fraction of its diameter is a flat
 // cut.
-constexpr double kFlat = 0.03;
+constexpr double kFlatHole = 0.03;
 // The search through all triangulations of a border takes its length to the third power.
 constexpr std::size_t kLongestForSearch = 300;
 
@@ -76,7 +76,7 @@ Hole fill_hole(Mesh& mesh, Mesh::Halfedge_index border) {
 }  // namespace
 
 bool Hole::is_flat() const {
-  return flatness <= kFlat * diameter;
+  return flatness <= kFlatHole * diameter;
 }
 
 std::vector<Hole> fill_holes(Surface& surface) {

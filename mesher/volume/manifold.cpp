@@ -19,7 +19,7 @@ namespace {
 constexpr double kTip = 1.0 / 3;
 
 /// Halvings of that height until nothing else of the boundary lies in the tip.
-constexpr int kMostHalvings = 6;
+constexpr int kMostHeightHalvings = 6;
 
 /// Where the middle of a void makes an angle with a facet whose sine is smaller, the tetrahedra in
 /// the tip would be flat.
@@ -148,7 +148,7 @@ class Separation {
       for (const std::int32_t v : facet)
         if (v != node) room = std::min(room, norm(nodes_[to_index(v)] - at));
     double height = kTip * room;
-    for (int halving = 0; halving < kMostHalvings; ++halving, height /= 2) {
+    for (int halving = 0; halving < kMostHeightHalvings; ++halving, height /= 2) {
       const Vec3 tip = at + height * fan.direction;
       if (is_free(tip, fan)) return tip;
     }

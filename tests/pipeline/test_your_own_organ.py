@@ -93,9 +93,9 @@ class YourOwnOrgan(unittest.TestCase):
         self.folder.cleanup()
 
     def run_line(self, line):
-        # The campaign of the page may take a quarter of an hour; here it has half a minute.
+        # The campaigns of the page may take a quarter of an hour each; here they have half a minute.
         if "--minutes" not in line:
-            line = line.replace("palpate init organ.stl", "palpate init organ.stl --minutes 0.4")
+            line = line.replace("palpate init", "palpate init --minutes 0.4")
         done = subprocess.run(["sh", "-c", line], cwd=self.root, env=self.env, capture_output=True, text=True,
                               check=False)
         self.assertEqual(done.returncode, 0, f"{line}\n{done.stdout}{done.stderr}")

@@ -12,12 +12,6 @@
 namespace palpate::calibrate {
 namespace {
 
-double rms(const std::vector<double>& values) {
-  double squares = 0;
-  for (const double value : values) squares += value * value;
-  return std::sqrt(squares / static_cast<double>(values.size()));
-}
-
 TestError error_of(const HomogeneousTest& test, const std::vector<double>& predicted) {
   TestError error;
   error.name = test.name;

@@ -55,12 +55,6 @@ void check_tests(const std::vector<HomogeneousTest>& tests, const HomogeneousSet
   }
 }
 
-double rms(const std::vector<double>& values) {
-  double squares = 0;
-  for (const double value : values) squares += value * value;
-  return std::sqrt(squares / static_cast<double>(values.size()));
-}
-
 /// Deviations of the noise of each residual of a test under the factors below: what a test counts,
 /// by its weight and by the number of its samples, says nothing of its noise. `mean` is the mean
 /// number of samples of the tests.
@@ -189,6 +183,12 @@ std::function<bool(const double*, double*, double*)> model_of(const HomogeneousP
 }
 
 }  // namespace
+
+double rms(const std::vector<double>& values) {
+  double squares = 0;
+  for (const double value : values) squares += value * value;
+  return std::sqrt(squares / static_cast<double>(values.size()));
+}
 
 std::vector<std::vector<double>> HomogeneousProblem::starts(const IncompressibleLaw& law,
                                                             const HomogeneousSettings& settings,

@@ -19,6 +19,9 @@ struct HomogeneousProblem {
                                           const HomogeneousSettings& settings, bool any_sign) const;
 };
 
+/// Root of the mean square.
+double rms(const std::vector<double>& values);
+
 /// @param wide  bounds are those of wide_constants() instead of default_constants(). Constants in
 ///   the settings keep theirs.
 /// The problem refers to the tests. @throws Error(Configuration) as fit_homogeneous().

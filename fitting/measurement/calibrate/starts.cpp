@@ -12,7 +12,7 @@ namespace {
 /// Lower bound of a modulus, of the one that the data suggest.
 constexpr double kSmallModulus = 1e-6;
 
-struct Range {
+struct StartRange {
   double start, low, high;
 };
 
@@ -20,10 +20,10 @@ int terms_of(std::string_view ogden) {
   return ogden.back() - '0';
 }
 
-std::vector<Range> ogden_ranges(int terms, double scale) {
+std::vector<StartRange> ogden_ranges(int terms, double scale) {
   constexpr std::array<double, 3> exponents{2, 6, -3};
   constexpr double kLargestExponent = 99.99;  // the table leaves 100 out
-  std::vector<Range> ranges;
+  std::vector<StartRange> ranges;
   for (int i = 0; i < terms; ++i) {
     // Each term stiffens: mu_i >= 0 for all i makes the law stable [Ogden 1984, sec. 7.2].
     ranges.push_back({scale / terms, 0, kInfinity});
@@ -33,11 +33,11 @@ std::vector<Range> ogden_ranges(int terms, double scale) {
 }
 
 /// Starts and bounds in the order of the constants.
-std::vector<Range> ranges_of(const IncompressibleLaw& law, const DataScale& data) {
+std::vector<StartRange> ranges_of(const IncompressibleLaw& law, const DataScale& data) {
   const std::string_view name = law.name();
   const double scale = data.modulus, small = kSmallModulus * scale;
-  const Range modulus{scale, small, kInfinity};
-  const Range any{1e-3 * scale, -kInfinity, kInfinity};
+  const StartRange modulus{scale, small, kInfinity};
+  const StartRange any{1e-3 * scale, -kInfinity, kInfinity};
   if (name == "mooney-rivlin") return {{0.4 * scale, 0, kInfinity}, {0.1 * scale, 0, kInfinity}};
   if (name == "mooney-rivlin-5")
     return {
@@ -62,10 +62,10 @@ std::vector<Range> ranges_of(const IncompressibleLaw& law, const DataScale& data
 }  // namespace
 
 std::vector<ConstantInfo> default_constants(const IncompressibleLaw& law, const DataScale& scale) {
-  const std::vector<Range> ranges = ranges_of(law, scale);
+  const std::vector<StartRange> ranges = ranges_of(law, scale);
   std::vector<ConstantInfo> constants;
   for (const fem::LawConstant& constant : law.constants()) {
-    const Range& range = ranges[constants.size()];
+    const StartRange& range = ranges[constants.size()];
     constants.push_back(
         {std::string(constant.name), constant.is_stress, range.start, range.low, range.high});
   }

@@ -13,7 +13,7 @@ namespace palpate::identify {
 namespace {
 
 constexpr std::size_t kFewest = 60;         // equations
-constexpr double kStill = 0.02;             // of the largest speed: slow
+constexpr double kSlowSpeed = 0.02;         // of the largest speed: slow
 constexpr int kDelaySteps = 60;             // of the search over delays
 constexpr double kTooUncertain = 0.25;      // deviation of the mass over the mass
 constexpr double kLeastTravelInSteps = 50;  // of the position
@@ -114,7 +114,7 @@ double position_step(const MotionRecord& record) {
   for (const double v : velocity) largest = std::max(largest, std::abs(v));
   double step = 0;
   for (std::size_t i = 0; i + 1 < record.sine_rows(); ++i) {
-    if (std::abs(velocity[i]) > 2 * kStill * largest) continue;
+    if (std::abs(velocity[i]) > 2 * kSlowSpeed * largest) continue;
     const double moved = record.position[i + 1][record.axis] - record.position[i][record.axis];
     const double smooth =
         (velocity[i] + velocity[i + 1]) / 2 * (record.time[i + 1] - record.time[i]);

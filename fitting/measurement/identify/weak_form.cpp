@@ -7,7 +7,7 @@
 namespace palpate::identify {
 namespace {
 
-constexpr std::ptrdiff_t kHalf = 5;                   // samples on either side of a slope
+constexpr std::ptrdiff_t kHalfWidth = 5;              // samples on either side of a slope
 constexpr double kLongest = 0.06, kShortest = 0.015;  // s, of a window
 constexpr double kSlow = 0.05;                        // of the largest speed
 constexpr double kPeak = 1024;                        // 1/max of s^5 (1 - s)^5
@@ -41,13 +41,14 @@ void divide(double begin, double end, double direction, std::vector<Window>& win
 std::vector<double> smooth_velocity(const MotionRecord& record, std::size_t axis) {
   const auto n = static_cast<std::ptrdiff_t>(record.time.size());
   std::vector<double> velocity(record.time.size(), 0.0);
-  for (std::ptrdiff_t i = kHalf; i + kHalf < n; ++i)
-    velocity[static_cast<std::size_t>(i)] = slope_of(
-        record, axis, static_cast<std::size_t>(i - kHalf), static_cast<std::size_t>(i + kHalf));
-  if (n <= 2 * kHalf) return velocity;
-  std::fill_n(velocity.begin(), kHalf, velocity[kHalf]);
-  std::fill(velocity.end() - kHalf, velocity.end(),
-            velocity[static_cast<std::size_t>(n - kHalf) - 1]);
+  for (std::ptrdiff_t i = kHalfWidth; i + kHalfWidth < n; ++i)
+    velocity[static_cast<std::size_t>(i)] =
+        slope_of(record, axis, static_cast<std::size_t>(i - kHalfWidth),
+                 static_cast<std::size_t>(i + kHalfWidth));
+  if (n <= 2 * kHalfWidth) return velocity;
+  std::fill_n(velocity.begin(), kHalfWidth, velocity[kHalfWidth]);
+  std::fill(velocity.end() - kHalfWidth, velocity.end(),
+            velocity[static_cast<std::size_t>(n - kHalfWidth) - 1]);
   return velocity;
 }
 

@@ -10,13 +10,13 @@ namespace palpate::measured {
 namespace {
 
 /// A turn of the displacement counts when it comes back by this fraction of the whole range.
-constexpr double kTurn = 0.3;
+constexpr double kTurnOfCycle = 0.3;
 
 /// Deep points and, between them, shallow ones, by a zigzag that ignores turns below a fraction of
 /// the range.
 std::vector<Cycle> zigzag(const std::vector<double>& x) {
   const auto [low, high] = std::minmax_element(x.begin(), x.end());
-  const double turn = kTurn * (*high - *low);
+  const double turn = kTurnOfCycle * (*high - *low);
   std::vector<Cycle> cycles;
   std::size_t lowest = 0, highest = 0;
   bool rising = false;

@@ -20,7 +20,7 @@ namespace palpate::mesher {
 namespace {
 
 /// A tetrahedron of less volume, in parts of the cube of its longest edge, has no orientation.
-constexpr double kFlat = 1e-12;
+constexpr double kFlatTetrahedron = 1e-12;
 
 void check_shapes(const MeshEntities& entities, const std::string& where) {
   if (!entities.other_solids.empty()) {
@@ -83,7 +83,7 @@ void orient(MeshEntities& entities, const std::string& where, const Log& log) {
   for (ListedTetrahedron& t : entities.tetrahedra) {
     const double longest = longest_edge(entities, t);
     const double size = volume(entities.nodes, corners_of(t));
-    if (!(std::abs(size) > kFlat * longest * longest * longest)) {
+    if (!(std::abs(size) > kFlatTetrahedron * longest * longest * longest)) {
       refuse_geometry(where,
                       text("tetrahedron ", t.number, " at ", position_text(centroid(entities, t)),
                            " has no volume"),

@@ -26,26 +26,26 @@ template <class Number>
 double decoded(std::string_view bytes, bool swapped) {
   return static_cast<double>(Scanner::decoded<Number>(bytes, swapped));
 }
-constexpr LegacyType kTypes[] = {{"char", 1, true, decoded<std::int8_t>},
-                                 {"signed_char", 1, true, decoded<std::int8_t>},
-                                 {"unsigned_char", 1, true, decoded<std::uint8_t>},
-                                 {"short", 2, true, decoded<std::int16_t>},
-                                 {"unsigned_short", 2, true, decoded<std::uint16_t>},
-                                 {"int", 4, true, decoded<std::int32_t>},
-                                 {"unsigned_int", 4, true, decoded<std::uint32_t>},
-                                 {"long", 8, true, decoded<std::int64_t>},
-                                 {"unsigned_long", 8, true, decoded<std::uint64_t>},
-                                 {"vtktypeint8", 1, true, decoded<std::int8_t>},
-                                 {"vtktypeuint8", 1, true, decoded<std::uint8_t>},
-                                 {"vtktypeint16", 2, true, decoded<std::int16_t>},
-                                 {"vtktypeuint16", 2, true, decoded<std::uint16_t>},
-                                 {"vtktypeint32", 4, true, decoded<std::int32_t>},
-                                 {"vtktypeuint32", 4, true, decoded<std::uint32_t>},
-                                 {"vtktypeint64", 8, true, decoded<std::int64_t>},
-                                 {"vtktypeuint64", 8, true, decoded<std::uint64_t>},
-                                 {"vtkidtype", 4, true, decoded<std::int32_t>},
-                                 {"float", 4, false, decoded<float>},
-                                 {"double", 8, false, decoded<double>}};
+constexpr LegacyType kLegacyTypes[] = {{"char", 1, true, decoded<std::int8_t>},
+                                       {"signed_char", 1, true, decoded<std::int8_t>},
+                                       {"unsigned_char", 1, true, decoded<std::uint8_t>},
+                                       {"short", 2, true, decoded<std::int16_t>},
+                                       {"unsigned_short", 2, true, decoded<std::uint16_t>},
+                                       {"int", 4, true, decoded<std::int32_t>},
+                                       {"unsigned_int", 4, true, decoded<std::uint32_t>},
+                                       {"long", 8, true, decoded<std::int64_t>},
+                                       {"unsigned_long", 8, true, decoded<std::uint64_t>},
+                                       {"vtktypeint8", 1, true, decoded<std::int8_t>},
+                                       {"vtktypeuint8", 1, true, decoded<std::uint8_t>},
+                                       {"vtktypeint16", 2, true, decoded<std::int16_t>},
+                                       {"vtktypeuint16", 2, true, decoded<std::uint16_t>},
+                                       {"vtktypeint32", 4, true, decoded<std::int32_t>},
+                                       {"vtktypeuint32", 4, true, decoded<std::uint32_t>},
+                                       {"vtktypeint64", 8, true, decoded<std::int64_t>},
+                                       {"vtktypeuint64", 8, true, decoded<std::uint64_t>},
+                                       {"vtkidtype", 4, true, decoded<std::int32_t>},
+                                       {"float", 4, false, decoded<float>},
+                                       {"double", 8, false, decoded<double>}};
 constexpr const char* kInt = "int";
 
 /// Spaces and other letters in names are written as %20.
@@ -183,9 +183,10 @@ class LegacyReader {
   }
 
   const LegacyType& type_of(const std::string& name) const {
-    const auto found = std::find_if(std::begin(kTypes), std::end(kTypes),
+    const auto found = std::find_if(std::begin(kLegacyTypes), std::end(kLegacyTypes),
                                     [&](const LegacyType& type) { return type.name == name; });
-    if (found == std::end(kTypes)) scanner_.refuse(text("the type '", name.substr(0, 30), "'"));
+    if (found == std::end(kLegacyTypes))
+      scanner_.refuse(text("the type '", name.substr(0, 30), "'"));
     return *found;
   }
 

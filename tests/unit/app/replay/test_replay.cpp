@@ -82,7 +82,7 @@ TEST_F(Replay, FindsTheSmallestChangeOfAForce) {
   ASSERT_TRUE(found);
   EXPECT_EQ(found->step, recorded.steps.size() / 2);
   EXPECT_EQ(found->what, "force[1]");
-  EXPECT_THROW(refuse(*found, recorded, "recording.h5"), Error);
+  EXPECT_THROW(refuse_difference(*found, recorded, "recording.h5"), Error);
 }
 
 TEST_F(Replay, AnotherFrictionIsAnotherSession) {
