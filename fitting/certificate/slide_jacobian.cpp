@@ -70,8 +70,8 @@ SlideJacobian::SlideJacobian(const ContactElement& element) : element_(&element)
 }
 
 SlideJacobian::Turned SlideJacobian::turned(const std::array<std::array<double, 3>, 3>& vertex,
-                                            double turn) {
-  const double c0 = std::cos(turn), s0 = std::sin(turn);
+                                            const Facet& facet) {
+  const double c0 = facet.cos_turn, s0 = facet.sin_turn;
   Turned along{};
   for (std::size_t l = 0; l < 3; ++l) {
     along[0][l] = vertex[l][0];
@@ -97,7 +97,7 @@ slide::Axes SlideJacobian::interpolated(const SlideCell& cell, const Turned& vec
 }
 
 slide::Axes SlideJacobian::rate(const Facet& f, const Turned& vectors) const {
-  const double c0 = std::cos(f.turn), s0 = std::sin(f.turn);
+  const double c0 = f.cos_turn, s0 = f.sin_turn;
   const auto component = [&](const std::array<double, 3>& u) {
     double by_x = 0, by_y = 0;
     for (std::size_t l = 1; l < 3; ++l) {  // differences, so that equal vectors give exactly 0
@@ -123,11 +123,12 @@ slide::Facet SlideJacobian::facet(const SlideCell& cell) const {
   // Relative to the middle of the range, cosines are near 1 and sines are small.
   const double half = cell.azimuth.radius();
   Facet f;
-  f.turn = cell.azimuth.middle();
+  f.cos_turn = std::cos(cell.azimuth.middle());
+  f.sin_turn = std::sin(cell.azimuth.middle());
   f.cosine = {std::cos(half), 1};
   f.sine = {-std::sin(half), std::sin(half)};
 
-  const Turned directions = turned(direction_, f.turn);
+  const Turned directions = turned(direction_, f);
   const Axes U = interpolated(cell, directions);
   const Range length = root(square(U.N) + square(U.x) + square(U.y));
   const Axes n{U.N / length, U.x / length, U.y / length};
@@ -158,7 +159,7 @@ Range SlideJacobian::along_s(const Facet& f, const Axes& a) {
 /// sigma is the part of the sum S = sum n_l w_l sigma_l across n; its derivative across n is that
 /// of S less (n . S) dn/ds.
 void SlideJacobian::add_lean(const SlideCell& cell, Facet& f) const {
-  const Turned leans = turned(lean_, f.turn);
+  const Turned leans = turned(lean_, f);
   Axes S, change;
   if (element_->coupling) {
     Weights w, growth;
@@ -185,7 +186,7 @@ void SlideJacobian::add_lean(const SlideCell& cell, Facet& f) const {
 }
 
 Range SlideJacobian::along(const Facet& facet, const Values& value) const {
-  const double c0 = std::cos(facet.turn), s0 = std::sin(facet.turn);
+  const double c0 = facet.cos_turn, s0 = facet.sin_turn;
   const Range first = value[1] - value[0], second = value[2] - value[0];
   const Range by_x = gradient_[1][0] * first + gradient_[2][0] * second;
   const Range by_y = gradient_[1][1] * first + gradient_[2][1] * second;
@@ -214,21 +215,23 @@ double SlideJacobian::slip_at(const std::array<double, 3>& weight, double limit,
 /// ends of the depths, since w_l h_l - mu g_l is linear in the natural coordinates.
 Range SlideJacobian::slip_limit(const SlideCell& cell) const {
   const ContactElement& e = *element_;
+  std::array<double, 3> w_low{1, 1, 1}, w_high{1, 1, 1}, force_low{}, force_high{};
+  for (std::size_t l = 0; l < 3; ++l) {
+    const runtime::CompiledCurve& g = e.normal.curves()[l];
+    if (e.coupling) {
+      w_low[l] = e.coupling->curves()[l].weight(cell.z.low);
+      w_high[l] = e.coupling->curves()[l].weight(cell.z.high);
+    }
+    force_low[l] = e.friction * g.force(cell.z.low);
+    force_high[l] = e.friction * g.force(cell.z.high);
+  }
+  const auto at = [](const Natural& n, const std::array<double, 3>& w) {
+    return std::array<double, 3>{n[0] * w[0], n[1] * w[1], n[2] * w[2]};
+  };
   Range rho{kInfinity, 0};
   for (const Natural& n : cell.part) {
-    std::array<double, 3> w_high{}, w_low{}, force_low{}, force_high{};
-    for (std::size_t l = 0; l < 3; ++l) {
-      const runtime::CompiledCurve& g = e.normal.curves()[l];
-      w_low[l] = w_high[l] = n[l];
-      if (e.coupling) {
-        w_low[l] *= e.coupling->curves()[l].weight(cell.z.low);
-        w_high[l] *= e.coupling->curves()[l].weight(cell.z.high);
-      }
-      force_low[l] = e.friction * g.force(cell.z.low);
-      force_high[l] = e.friction * g.force(cell.z.high);
-    }
-    rho.low = std::min(rho.low, slip_at(w_high, weighted(n, force_low), false));
-    rho.high = std::max(rho.high, slip_at(w_low, weighted(n, force_high), true));
+    rho.low = std::min(rho.low, slip_at(at(n, w_high), weighted(n, force_low), false));
+    rho.high = std::max(rho.high, slip_at(at(n, w_low), weighted(n, force_high), true));
   }
   return rho;
 }

@@ -69,7 +69,7 @@ class SlideJacobian {
   /// and the lateral offset of the grip takes the rest, does not.
   enum class Grip { Renewed, Kept };
 
-  static Turned turned(const std::array<std::array<double, 3>, 3>& vertex, double turn);
+  static Turned turned(const std::array<std::array<double, 3>, 3>& vertex, const Facet& facet);
   static Axes interpolated(const SlideCell& cell, const Turned& vectors);
   static Axes interpolated(const SlideCell& cell, const Turned& vectors, const Weights& weights);
   /// Derivatives along tau.

@@ -24,18 +24,18 @@ inline bool is_zero(const Range& a) {
 }
 
 struct Facet {
-  Range cosine, sine;              ///< of the azimuth relative to `turn`
-  double turn = 0;                 ///< azimuth of the middle of the cell
-  Range n_N, n_b;                  ///< n along N and b
-  Range r;                         ///< length of n in the plane of N and tau
-  Range t_tau, n_tau;              ///< t . tau, n . tau
-  Range s_tau;                     ///< s . tau
-  Range kappa_t, kappa_s;          ///< t . dn/ds and s . dn/ds along tau, 1/m
-  Range lean_t, lean_s;            ///< t . sigma and s . sigma
-  Range lean_turn;                 ///< sigma . dn/ds, 1/m
-  Range lean_t_rate, lean_s_rate;  ///< t . d sigma/ds and s . d sigma/ds, 1/m
-  Range lean_growth;               ///< t . d sigma/dz, 1/m
-  Range lean_s_growth;             ///< s . d sigma/dz, 1/m
+  Range cosine, sine;                 ///< of the azimuth relative to the middle of the cell
+  double cos_turn = 1, sin_turn = 0;  ///< of the azimuth of the middle of the cell
+  Range n_N, n_b;                     ///< n along N and b
+  Range r;                            ///< length of n in the plane of N and tau
+  Range t_tau, n_tau;                 ///< t . tau, n . tau
+  Range s_tau;                        ///< s . tau
+  Range kappa_t, kappa_s;             ///< t . dn/ds and s . dn/ds along tau, 1/m
+  Range lean_t, lean_s;               ///< t . sigma and s . sigma
+  Range lean_turn;                    ///< sigma . dn/ds, 1/m
+  Range lean_t_rate, lean_s_rate;     ///< t . d sigma/ds and s . d sigma/ds, 1/m
+  Range lean_growth;                  ///< t . d sigma/dz, 1/m
+  Range lean_s_growth;                ///< s . d sigma/dz, 1/m
 };
 
 /// S and B' = -dS/ds along tau, in the frame (t, s) of the facet: there t is the direction of q,

@@ -39,8 +39,8 @@ Tensor along_tau(const slide::Facet& f, const Entry& entry) {
 
 /// t, s and n have these components along N, tau and b; t has none along b.
 slide::Softening SlideJacobian::softening(const SlideCell& cell, const Facet& f) const {
-  const Turned b = turned(soft_axis_, f.turn);
-  const double c0 = std::cos(f.turn), s0 = std::sin(f.turn);
+  const Turned b = turned(soft_axis_, f);
+  const double c0 = f.cos_turn, s0 = f.sin_turn;
   const auto product = [&](std::size_t i, std::size_t j, std::size_t l) {
     return b[i][l] * b[j][l];
   };

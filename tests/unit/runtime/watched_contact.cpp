@@ -22,10 +22,10 @@ constexpr double kNoDeflection = 1e-11;
 constexpr double kForgotten = 1e-8;
 
 struct CurvePoint {
-  double force = 0, energy = 0;
+  double force = 0, energy = 0, slope = 0;
 };
 
-/// Force and energy of a stored curve at d, from its slopes: f' is linear between knots.
+/// Force, energy and slope of a stored curve at d, from its slopes: f' is linear between knots.
 CurvePoint curve_at(const ResponseCurve& curve, double d) {
   CurvePoint at;
   if (curve.knot.empty() || !(d > static_cast<double>(curve.knot[0]))) return at;
@@ -46,6 +46,7 @@ CurvePoint curve_at(const ResponseCurve& curve, double d) {
   const double x = d - start;
   at.energy += x * (at.force + x * (s0 / 2 + x * rate / 6));
   at.force += x * (s0 + x * rate / 2);
+  at.slope = s0 + x * rate;
   return at;
 }
 
@@ -144,6 +145,7 @@ CurvePoint response_at(const Library& library, const runtime::SurfacePoint& p,
     const CurvePoint at = curve_at(library.responses[static_cast<std::size_t>(t[l])].*curve, d);
     sum.force += weights[l] * at.force;
     sum.energy += weights[l] * at.energy;
+    sum.slope += weights[l] * at.slope;
   }
   return sum;
 }
@@ -151,28 +153,38 @@ CurvePoint normal_response(const Library& library, const runtime::SurfacePoint& 
   return response_at(library, p, p.natural, &NodeResponse::normal, z);
 }
 
-/// G*(F) = max over z of F z - G(z), J; infinite where g stays below F. By halving and secants
-/// between depths on both sides of g = F.
+/// Where a response that rises has a force, between `low`, where its force is smaller, and `high`,
+/// where it is not: by Newton's method, and by halving where that leaves what is left of the
+/// interval. `look` sees every try.
+template <class Response, class Look>
+double where_it_is(double force, double low, double high, const Response& response,
+                   const Look& look) {
+  constexpr double kClose = 2 * std::numeric_limits<double>::epsilon();
+  double d = high;
+  for (int i = 0; i < 200; ++i) {
+    const CurvePoint at = response(d);
+    look(d, at);
+    (at.force < force ? low : high) = d;
+    const double newton = d - (at.force - force) / at.slope;
+    const double next = newton > low && newton < high ? newton : (low + high) / 2;
+    if (at.force == force || std::abs(next - d) <= kClose * d) return d;
+    d = next;
+  }
+  return d;
+}
+
+/// G*(F) = max over z of F z - G(z), J; infinite where g stays below F.
 double conjugate(const Library& library, const runtime::SurfacePoint& p, double force) {
   if (!(force > 0)) return 0;
-  double low = 0, high = 1e-3, f_low = 0;
-  CurvePoint at = normal_response(library, p, high);
-  for (; at.force < force; at = normal_response(library, p, high)) {
+  double low = 0, high = 1e-3, best = 0;
+  while (normal_response(library, p, high).force < force) {
     low = high;
-    f_low = at.force;
     high *= 2;
     if (high > 1e6) return std::numeric_limits<double>::infinity();
   }
-  double f_high = at.force, best = std::max(force * high - at.energy, 0.0);
-  for (int i = 0; i < 60 && high - low > 1e-13; ++i) {
-    const double secant = low + (high - low) * (force - f_low) / std::max(f_high - f_low, 1e-300);
-    const double z = i % 3 == 2 ? (low + high) / 2 : secant;
-    at = normal_response(library, p, z);
-    best = std::max(best, force * z - at.energy);
-    if (std::abs(at.force - force) <= 1e-11 * force) break;
-    (at.force < force ? low : high) = z;
-    (at.force < force ? f_low : f_high) = at.force;
-  }
+  where_it_is(
+      force, low, high, [&](double z) { return normal_response(library, p, z); },
+      [&](double z, const CurvePoint& at) { best = std::max(best, force * z - at.energy); });
   return best;
 }
 
@@ -229,20 +241,16 @@ double MemoryTwin::lateral_energy(const Vec3& q) const {
   return sum.stored - dot(sum.relaxed, q);
 }
 
-/// The deflection, no longer than `longest`, at which grad H is a force: by halving and secants.
+/// The deflection, no longer than `longest`, at which grad H is a force.
 Vec3 MemoryTwin::deflection_of(const Vec3& force, double longest) const {
   const double size = norm(force);
   if (!(size > 0)) return {};
-  double low = 0, high = longest, f_low = 0, f_high = lateral(longest);
-  for (int i = 0; i < 120 && high - low > 1e-17 * longest; ++i) {
-    const double secant = low + (high - low) * (size - f_low) / std::max(f_high - f_low, 1e-300);
-    const double rho = i % 3 == 2 || !(secant > low && secant < high) ? (low + high) / 2 : secant;
-    const double f = lateral(rho);
-    (f < size ? low : high) = rho;
-    (f < size ? f_low : f_high) = f;
-    if (std::abs(f - size) <= 1e-15 * size) return (rho / size) * force;
-  }
-  return (high / size) * force;
+  if (!(lateral(longest) > size)) return (longest / size) * force;
+  const auto response = [&](double rho) {
+    return response_at(library_, place_, held_, &NodeResponse::lateral, rho);
+  };
+  const double rho = where_it_is(size, 0, longest, response, [](double, const CurvePoint&) {});
+  return (rho / size) * force;
 }
 
 /// V of (R18).
