@@ -134,10 +134,24 @@ bool PartialWeight::lowers(double length, const State& next) const {
          next.residual.norm() <= (1 - kContraction * length) * from.residual.norm();
 }
 
+bool PartialWeight::newton_step(const State& now, const Displacement& u, Eigen::VectorXd& d) {
+  is_convex_ = factorize() && solve(-now.residual, d);
+  if (is_convex_ || foretold_.empty()) return is_convex_;
+  model_.stiffness(u, K_, nullptr, foretold_);
+  return factorize() && solve(-now.residual, d);
+}
+
+/// Where the last step was with the stiffness of its state, the one here is positive definite, too.
+bool PartialWeight::is_stable(const Displacement& u) {
+  if (is_convex_) return true;
+  model_.stiffness(u, K_);
+  return factorize();
+}
+
 std::optional<PartialWeight::Outcome> PartialWeight::free_step(double part, State& now,
                                                                Displacement& u) {
   Eigen::VectorXd d;
-  if (!factorize() || !solve(-now.residual, d)) return Outcome::Unstable;
+  if (!newton_step(now, u, d)) return Outcome::Unstable;
   if (counter_ != nullptr) counter_->count_step();
   if (iterations_ == 0) first_step_ = d.segment<3>(3 * largest_node(d)).norm();
   if (free_steps_ == 0) checkpoint_ = {u, now, d};
@@ -150,6 +164,7 @@ std::optional<PartialWeight::Outcome> PartialWeight::free_step(double part, Stat
     const bool lower = lowers(free_steps_ == 0 ? length : 1, next);
     if (!lower && free_steps_ == kFreeSteps) return Outcome::Unconverged;
     free_steps_ = lower ? 0 : free_steps_ + 1;
+    foretold_ = model_.foretold_pressures(u, trial);
     u.swap(trial);
     now = std::move(next);
     return std::nullopt;
@@ -166,6 +181,7 @@ std::optional<PartialWeight::Outcome> PartialWeight::step_from_checkpoint(double
     add_step(model_, length, checkpoint_.d, trial);
     State next = evaluate(part, trial);
     if (!(next.min_J > 0) || !lowers(length, next)) continue;
+    foretold_ = model_.foretold_pressures(checkpoint_.u, trial);
     u.swap(trial);
     now = std::move(next);
     return std::nullopt;
@@ -174,11 +190,13 @@ std::optional<PartialWeight::Outcome> PartialWeight::step_from_checkpoint(double
 }
 
 PartialWeight::Outcome PartialWeight::equilibrate(double part, Displacement& u) {
+  foretold_.clear();
+  is_convex_ = true;
   State now = evaluate(part, u);
   if (!(now.min_J > 0)) return Outcome::Inverted;
   free_steps_ = 0;
   for (iterations_ = 0; iterations_ < kWeightNewtonSteps; ++iterations_) {
-    if (is_equilibrium(now, u)) return Outcome::Found;
+    if (is_equilibrium(now, u)) return is_stable(u) ? Outcome::Found : Outcome::Unstable;
     std::optional<Outcome> failure = free_step(part, now, u);
     if (failure && free_steps_ > 0) failure = step_from_checkpoint(part, now, u);
     if (failure) return *failure;

@@ -21,6 +21,12 @@ namespace palpate::fem {
 /// row are therefore accepted whatever their energy, and taken back where none of them lowers it
 /// (watchdog) [Nocedal & Wright 2006, sec. 15.6].
 ///
+/// After a long step the pressures of a nearly incompressible body are far from those of the
+/// equilibrium, and its stiffness need not be positive definite though the equilibrium is stable.
+/// The step then takes the pressures that the state before foretells for the geometric stiffness
+/// (SolidModel::foretold_pressures). What it leads to is an equilibrium where the stiffness is
+/// positive definite.
+///
 /// In equilibrium the residual is at most 1e-9 of the weight, or its rounding error where that is
 /// larger: a slender body is so much stiffer along its axis than across it that the last digit of
 /// the displacements stands for a force of more than 1e-8 of the weight.
@@ -71,6 +77,9 @@ class PartialWeight {
   void solve_once(const Eigen::VectorXd& load, Eigen::VectorXd& d);
 
   State evaluate(double part, const Displacement& u) const;
+  bool is_stable(const Displacement& u);
+  /// d; false where the stiffness is not positive definite.
+  bool newton_step(const State& now, const Displacement& u, Eigen::VectorXd& d);
   bool is_equilibrium(const State& now, const Displacement& u);
   double rounding_error(const Displacement& u) const;
   /// Whether a step of this length from the checkpoint has lowered the energy or the residual.
@@ -96,7 +105,9 @@ class PartialWeight {
     Eigen::VectorXd d;  ///< Newton's step
   };
   Checkpoint checkpoint_;
-  int free_steps_ = 0;  ///< since the checkpoint
+  std::vector<double> foretold_;  ///< pressures of the present state, Pa; may be empty
+  bool is_convex_ = true;         ///< whether the last step was with the stiffness of its state
+  int free_steps_ = 0;            ///< since the checkpoint
   int iterations_ = 0;
   double first_step_ = 0;
 };

@@ -76,6 +76,24 @@ TEST(PartialWeight, IsThatOfASmallerGravity) {
   EXPECT_GT(u.norm(), 1e-4);
 }
 
+/// A long step leaves large pressures: the stiffness there is not positive definite, though the
+/// equilibrium is stable. It is that to which small parts of the weight lead.
+TEST(PartialWeight, PassesStatesOfLargePressures) {
+  const SolidModel model(
+      test::make_block(test::even(0, 0.02, 3), test::even(0, 0.02, 3), test::even(0, 0.06, 9)),
+      {make_law({2.5e3, 0.495}, "t")}, Dilatation::Mean, Gravity{{9.81, 0, 0}, kDensity});
+  const std::vector<int> permutation = nested_dissection(model.pattern());
+  PartialWeight body(model, permutation);
+  const Displacement rest = Displacement::Zero(3, model.mesh().nodes());
+  Displacement at_once = rest, in_parts = rest;
+  ASSERT_EQ(body.equilibrate(0.08, at_once), PartialWeight::Outcome::Found);
+  EXPECT_LE(body.iterations(), 8);  // 17 where such a step is taken back
+  EXPECT_TRUE(body.weakest_mode(at_once));
+  for (int i = 1; i <= 8; ++i)
+    ASSERT_EQ(body.equilibrate(0.01 * i, in_parts), PartialWeight::Outcome::Found) << i;
+  EXPECT_LT((at_once - in_parts).norm(), 1e-6 * in_parts.norm());
+}
+
 /// The factor of the first step is in the resident memory when the second begins: what it needs is
 /// not asked for twice.
 TEST(PartialWeight, TakesItsMemoryOnce) {
