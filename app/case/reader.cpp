@@ -237,18 +237,20 @@ void TableReader::number(double& value, const Key& key) {
 }
 
 double TableReader::quantity_of(const toml::node& node, Dimension dimension, const Key& key) const {
-  const std::string_view kind = dimension_name(dimension);
+  const std::string_view name = dimension_name(dimension);
+  const bool vowel = std::string_view("aeiou").find(name.front()) != std::string_view::npos;
+  const std::string kind = fmt::format("{} {}", vowel ? "an" : "a", name);
   const std::string example =
       fmt::format("{} (units: {})", example_of(key, dimension), unit_list(dimension));
   const auto text = node.value_exact<std::string>();
-  if (!text) wrong_type(node, key, fmt::format("a {} with its unit", kind), example);
+  if (!text) wrong_type(node, key, kind + " with its unit", example);
   const ParsedQuantity parsed = parse_quantity(*text, dimension);
   switch (parsed.fault) {
     case QuantityFault::NoNumber:
     case QuantityFault::NoUnit:
-      wrong_type(node, key, fmt::format("a {} with its unit", kind), example);
+      wrong_type(node, key, kind + " with its unit", example);
     case QuantityFault::WrongUnit:
-      wrong_type(node, key, fmt::format("a {} in one of its units", kind), example);
+      wrong_type(node, key, kind + " in one of its units", example);
     case QuantityFault::None:
       break;
   }

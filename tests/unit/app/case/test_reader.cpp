@@ -22,6 +22,8 @@ TEST(CaseReader, RejectsWrongOrMissingUnit) {
               HasSubstr("units: kPa, MPa, psi, kgf/cm^2, N/mm^2, Pa"));
   EXPECT_THAT(message_with("\"-15 mm\"", "\"-15\""), HasSubstr("support[0].point"));
   EXPECT_THAT(message_with("\"33.3 deg\"", "33.3"), HasSubstr("indentation.azimuths"));
+  EXPECT_THAT(message_with("\"33.3 deg\"", "33.3"), HasSubstr("an angle with its unit"));
+  EXPECT_THAT(message_with("\"8 mm\"", "8"), HasSubstr("a length with its unit"));
 }
 
 TEST(CaseReader, RejectsUnitWhereANumberIsBare) {
