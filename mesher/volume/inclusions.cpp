@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "mesher/volume/inclusions.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <map>
 #include <utility>
 
@@ -58,6 +60,33 @@ std::vector<std::string> region_names(const Settings& settings) {
   return names;
 }
 
+/// Edges of the facets of an inclusion over the radius of the ball with its volume over its area,
+/// and the shortest over element_size.
+constexpr double kFacetOverRadius = 0.5, kShortest = 0.5;
+
+double facet_size(const Surface& inclusion, double element_size) {
+  const double radius = 3 * signed_volume(inclusion) / area(inclusion);
+  return std::clamp(kFacetOverRadius * radius, kShortest * element_size, element_size);
+}
+
+constexpr double kSameVolume = 1e-9;  ///< relative
+
+/// Moves every point outwards by the same distance, so that the surface encloses this volume:
+/// chords of a curved surface enclose less. A surface with flat faces encloses it as it is.
+void keep_volume(Surface& surface, double volume) {
+  std::vector<Vec3> outward(surface.points.size());
+  for (const Triangle& t : surface.triangles)
+    for (const std::int32_t v : t)
+      outward[to_index(v)] = outward[to_index(v)] + area_vector(surface.points, t);
+  for (int i = 0; i < 3; ++i) {
+    const double missing = volume - signed_volume(surface);
+    if (std::abs(missing) < kSameVolume * volume) return;
+    const double distance = missing / area(surface);
+    for (std::size_t v = 0; v < outward.size(); ++v)
+      surface.points[v] = surface.points[v] + distance * unit(outward[v]);
+  }
+}
+
 }  // namespace
 
 void check_inclusions(const Settings& settings, const Surface& skin,
@@ -100,9 +129,12 @@ std::vector<Surface> remesh_inclusions(const Settings& settings,
                                        const std::vector<Surface>& inclusions) {
   std::vector<Surface> remeshed;
   for (std::size_t i = 0; i < inclusions.size(); ++i) {
-    remeshed.push_back(remesh(inclusions[i], {settings.element_size, 1, settings.feature_angle},
+    const Surface& inclusion = inclusions[i];
+    const double size = facet_size(inclusion, settings.element_size);
+    remeshed.push_back(remesh(inclusion, {size, 1, settings.feature_angle},
                               settings.inclusions[i].path.string(), settings.log)
                            .boundary);
+    keep_volume(remeshed.back(), signed_volume(inclusion));
   }
   return remeshed;
 }

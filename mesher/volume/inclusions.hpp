@@ -23,7 +23,8 @@ void check_inclusions(const Settings& settings, const Surface& skin,
 Domain domain_of(const Settings& settings, const Surface& skin,
                  const std::vector<Surface>& inclusions);
 
-/// Inclusions with edges near element_size.
+/// Inclusions with the volume that they have, and edges near element_size; half as long at most
+/// where the inclusion is small: half the radius of the ball with its volume over its area.
 std::vector<Surface> remesh_inclusions(const Settings& settings,
                                        const std::vector<Surface>& inclusions);
 

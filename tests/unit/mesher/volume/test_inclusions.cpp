@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "mesher/geometry/surface.hpp"
 #include "mesher/mesher.hpp"
 #include "tests/unit/mesher/body_checks.hpp"
 #include "tests/unit/mesher/refusals.hpp"
@@ -35,12 +36,28 @@ TEST(Inclusions, AreTheirOwnRegionAndVolumesAddUp) {
   test::expect_sound(body);
   EXPECT_EQ(body.region_names, (std::vector<std::string>{"fat", "nodule"}));
   EXPECT_NEAR(test::volume_of_region(body, -1) / (0.06 * 0.06 * 0.04), 1, 1e-9);
-  // Chords remove 3 h^2/8r^2 = 2.3 % of the volume at h = 3 mm; no triangle lies outside.
-  const double part = test::volume_of_region(body, 1) / (4 * pi / 3 * std::pow(radius, 3));
-  EXPECT_GT(part, 0.97);
-  EXPECT_LT(part, 1);
+  EXPECT_NEAR(test::volume_of_region(body, 1), signed_volume(test::sphere({}, radius, 120)),
+              1e-6 * std::pow(radius, 3));
   EXPECT_NEAR(test::volume_of_region(body, 0) + test::volume_of_region(body, 1),
               test::volume_of_region(body, -1), 1e-15);
+}
+
+// Chords as long as the radius would remove 3 h^2/(8 r^2) of the volume, more than a third; flat
+// faces lose nothing, and their corners stay.
+TEST(Inclusions, KeepTheirVolumeOnLargeElements) {
+  const TemporaryFile skin("skin.off", off_text(test::box({-30, -30, 0}, {30, 30, 40})));
+  const TemporaryFile ball("ball.off", off_text(test::sphere({12, 0, 22}, 8, 60)));
+  const TemporaryFile brick("brick.off", off_text(test::box({-20, -6, 14}, {-8, 6, 26})));
+  Settings s;
+  s.surface = {skin.path(), 0.001, "fat"};
+  s.inclusions = {{ball.path(), 0.001, "ball"}, {brick.path(), 0.001, "brick"}};
+  s.supports = {BoxSupport{{-1, -1, -1}, {1, 1, 0}}};
+  s.patch_spacing = s.element_size = 0.008;
+  const Body body = mesh(s);
+  test::expect_sound(body);
+  const double of_ball = 1e-9 * signed_volume(test::sphere({}, 8, 60));
+  EXPECT_NEAR(test::volume_of_region(body, 1), of_ball, 1e-3 * of_ball);
+  EXPECT_NEAR(test::volume_of_region(body, 2), 12 * 12 * 12 * 1e-9, 1e-15);
 }
 
 TEST(Inclusions, MayNestCrossAndLeaveTheSkinButNotLieOutside) {
