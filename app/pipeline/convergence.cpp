@@ -130,6 +130,9 @@ ConvergenceTable run_convergence(const Workspace& space, int levels,
       if (sites.empty()) sites = three_of(sites_of(body));
     }
     check_same_sites(first, body, space.c.name);
+    // Mean normals of smaller facets are others, and a force along another direction is no closer
+    // to the limit.
+    body.response.inward = first.response.inward;
     table.nodes.push_back(static_cast<std::int64_t>(body.nodes.size()));
     campaign.sites = sites;
     fem::CampaignReport report;
