@@ -15,6 +15,8 @@
 #include "mesher/geometry/text.hpp"
 #include "mesher/skin/curve_edges.hpp"
 #include "mesher/skin/remesh.hpp"
+#include "mesher/support/follow_outlines.hpp"
+#include "mesher/support/outlines.hpp"
 #include "mesher/support/supports.hpp"
 #include "mesher/volume/delaunay.hpp"
 #include "mesher/volume/fill.hpp"
@@ -34,13 +36,16 @@ int subdivisions_of(const Settings& settings) {
 }
 
 Discretization by_remeshing(const Settings& settings, const Surface& skin,
+                            const std::vector<SupportedPart>& parts,
                             const std::vector<Surface>& inclusions) {
   const std::string where = settings.surface.path.string();
   check_inclusions(settings, skin, inclusions);
+  std::vector<std::vector<Edge>> outlines;
+  for (const SupportedPart& part : parts) outlines.push_back(part.outline);
   Discretization result;
   result.skin = remesh(skin,
                        {settings.patch_spacing, subdivisions_of(settings), settings.feature_angle,
-                        settings.curved_facets},
+                        settings.curved_facets, outlines},
                        where, settings.log);
   const std::vector<Surface> remeshed = remesh_inclusions(settings, inclusions);
   const Surface shells = join_shells(settings, result.skin.boundary, remeshed);
@@ -56,6 +61,7 @@ Discretization by_remeshing(const Settings& settings, const Surface& skin,
 }
 
 Discretization by_refinement(const Settings& settings, const Surface& skin,
+                             const OutlinedSurface& outlined,
                              const std::vector<Surface>& inclusions) {
   const std::string where = settings.surface.path.string();
   DelaunaySettings delaunay;
@@ -67,6 +73,11 @@ Discretization by_refinement(const Settings& settings, const Surface& skin,
   delaunay.log = settings.log;
   DelaunayReport report;
   VolumeMesh volume = mesh_domain(domain_of(settings, skin, inclusions), delaunay, where, report);
+  const std::size_t crossing =
+      follow_outlines(outlined, boundary_of(volume, where), volume.tetrahedra, volume.nodes);
+  if (crossing > 0)
+    note(settings.log, text("supports: ", counted(crossing, "edge"),
+                            " of the body still cross their outlines: facets there end near them"));
   const double spacing = subdivisions_of(settings) > 1 ? settings.patch_spacing : 0;
   Discretization result = with_response(std::move(volume), spacing, settings.feature_angle, where);
   if (settings.curved_facets) result.skin.curved = curve_edges(result.skin.boundary, skin);
@@ -108,14 +119,22 @@ void check_discretization(const Discretization& d, const Settings& settings, con
 }
 
 std::vector<Way> ways(const Settings& settings, const Surface& skin,
-                      const std::vector<Surface>& inclusions) {
+                      const OutlinedSurface& outlined, const std::vector<Surface>& inclusions) {
+  const bool has_outline =
+      std::any_of(outlined.parts.begin(), outlined.parts.end(),
+                  [](const SupportedPart& part) { return !part.outline.empty(); });
   std::vector<Way> result;
-  if (settings.method != MeshMethod::Delaunay && !needs_refinement(settings))
+  if (settings.method != MeshMethod::Delaunay && !needs_refinement(settings)) {
+    if (has_outline)
+      result.push_back(
+          {"isotropic remeshing along the outlines of supports",
+           [&] { return by_remeshing(settings, outlined.surface, outlined.parts, inclusions); }});
     result.push_back(
-        {"isotropic remeshing", [&] { return by_remeshing(settings, skin, inclusions); }});
+        {"isotropic remeshing", [&] { return by_remeshing(settings, skin, {}, inclusions); }});
+  }
   if (settings.method != MeshMethod::Isotropic)
-    result.push_back(
-        {"Delaunay refinement", [&] { return by_refinement(settings, skin, inclusions); }});
+    result.push_back({"Delaunay refinement",
+                      [&] { return by_refinement(settings, skin, outlined, inclusions); }});
   return result;
 }
 
@@ -128,8 +147,9 @@ Discretization discretize(const Settings& settings, const Surface& skin,
     refuse(where, "isotropic remeshing makes neither layers, voids nor coarser supports",
            "remove mesh.method, or the layers, voids and support_coarsening");
   }
+  const OutlinedSurface outlined = with_outlines(skin, settings);
   std::string problems, remedy;
-  for (const Way& way : ways(settings, skin, inclusions)) {
+  for (const Way& way : ways(settings, skin, outlined, inclusions)) {
     try {
       Discretization result;
       guard_cgal(where, "smooth the surface, or change element_size a little",

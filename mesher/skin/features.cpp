@@ -3,6 +3,7 @@
 
 #include <CGAL/Polygon_mesh_processing/detect_features.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -42,6 +43,28 @@ std::size_t drop_short_features(const Mesh& mesh, EdgeFlags sharp, double shorte
   return dropped;
 }
 
+/// Distance from flagged edges, over the spacing, within which an edge of about their direction
+/// runs beside them; and the least cosine of the two.
+constexpr double kBeside = 0.5, kLeastCosine = 0.7;
+
+struct Segment {
+  Vec3 a, b;
+};
+
+Segment segment_of(const Mesh& mesh, Mesh::Edge_index edge) {
+  const auto h = mesh.halfedge(edge);
+  return {to_vec3(mesh.point(mesh.source(h))), to_vec3(mesh.point(mesh.target(h)))};
+}
+
+bool runs_beside(const Segment& one, const Segment& other, double distance) {
+  const Vec3 along = one.b - one.a, beside = other.b - other.a;
+  const Vec3 from = 0.5 * (one.a + one.b) - other.a;
+  const double length = norm(beside);
+  const double at = std::clamp(dot(from, beside) / (length * length), 0.0, 1.0);
+  return norm(from - at * beside) < distance &&
+         std::abs(dot(along, beside)) > kLeastCosine * norm(along) * length;
+}
+
 }  // namespace
 
 EdgeFlags flag_sharp_edges(Mesh& mesh, double angle, double spacing, std::size_t& dropped) {
@@ -49,6 +72,30 @@ EdgeFlags flag_sharp_edges(Mesh& mesh, double angle, double spacing, std::size_t
   CGAL::Polygon_mesh_processing::detect_sharp_edges(mesh, angle * 180 / std::numbers::pi, sharp);
   dropped = drop_short_features(mesh, sharp, kShortestFeature * spacing);
   return sharp;
+}
+
+double flag_outline(Mesh& mesh, const std::vector<Edge>& outline, double spacing, EdgeFlags flags) {
+  std::vector<Segment> flagged;
+  for (const auto e : mesh.edges())
+    if (flags[e]) flagged.push_back(segment_of(mesh, e));
+  const auto vertex = [](std::int32_t v) { return Mesh::Vertex_index(static_cast<unsigned>(v)); };
+  EdgeFlags follows = mesh.add_property_map<Mesh::Edge_index, bool>("e:outline", false).first;
+  for (const Edge& ends : outline) {
+    const auto edge = mesh.edge(mesh.halfedge(vertex(ends[0]), vertex(ends[1])));
+    const Segment segment = segment_of(mesh, edge);
+    follows[edge] = std::none_of(flagged.begin(), flagged.end(), [&](const Segment& other) {
+      return runs_beside(segment, other, kBeside * spacing);
+    });
+  }
+  drop_short_features(mesh, follows, kShortestFeature * spacing);
+  double left_out = 0;
+  for (const Edge& ends : outline) {
+    const auto edge = mesh.edge(mesh.halfedge(vertex(ends[0]), vertex(ends[1])));
+    if (follows[edge]) flags[edge] = true;
+    if (!flags[edge]) left_out += length(mesh, edge);
+  }
+  mesh.remove_property_map(follows);
+  return left_out;
 }
 
 }  // namespace palpate::mesher

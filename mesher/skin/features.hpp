@@ -3,7 +3,9 @@
 #pragma once
 
 #include <cstddef>
+#include <vector>
 
+#include "format/vec3.hpp"
 #include "mesher/geometry/cgal_mesh.hpp"
 
 namespace palpate::mesher {
@@ -18,5 +20,11 @@ inline constexpr double kShortestFeature = 3;
 /// shorter than kShortestFeature spacings.
 /// @param[out] dropped number of edges in such fragments
 EdgeFlags flag_sharp_edges(Mesh& mesh, double angle, double spacing, std::size_t& dropped);
+
+/// Flags the edges of an outline as well, but those that run close beside flagged ones and
+/// connected fragments shorter than kShortestFeature spacings: triangles of one spacing have no
+/// room there.
+/// @return the length of the others, m
+double flag_outline(Mesh& mesh, const std::vector<Edge>& outline, double spacing, EdgeFlags flags);
 
 }  // namespace palpate::mesher

@@ -217,6 +217,14 @@ NestedSurface remesh(const Surface& input, const RemeshSettings& settings, const
     note(log, text(where, ": ", counted(dropped, "sharp edge"), " in fragments shorter than ",
                    kShortestFeature, " patches are smoothed"));
   }
+  double left_out = 0;
+  for (const std::vector<Edge>& outline : settings.outlines)
+    left_out += flag_outline(mesh, outline, settings.spacing, sharp);
+  if (left_out > 0) {
+    note(log, text("supports: ", millimetres(left_out),
+                   " of their outlines run beside an edge or are shorter than ", kShortestFeature,
+                   " patches: facets there end near them"));
+  }
   const Target target(input, mesh, sharp);
   for (unsigned round = 0; round < kRemeshingRounds; ++round) {
     pmp::isotropic_remeshing(mesh.faces(), settings.spacing, mesh,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "format/body.hpp"
 #include "mesher/geometry/surface.hpp"
@@ -22,6 +23,9 @@ struct RemeshSettings {
   int subdivisions = 1;      ///< n: each response triangle becomes n x n boundary facets
   double feature_angle = 0;  ///< rad; sharper edges of the input stay sharp
   bool curved = false;       ///< put the middles of boundary edges on the input surface
+  /// Sets of edges of the input that edges are to follow like sharp ones, but where they run close
+  /// beside such or are shorter than three spacings.
+  std::vector<std::vector<Edge>> outlines = {};
 };
 
 /// Remeshes `input` isotropically to the spacing, preserves its sharp edges, and subdivides each

@@ -2,6 +2,7 @@
 #include "mesher/support/supports.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <memory>
 #include <set>
@@ -14,37 +15,6 @@
 
 namespace palpate::mesher {
 namespace {
-
-// Nodes on the border of a support are inside it whatever their rounding: this part of
-// element_size.
-constexpr double kSupportTolerance = 1e-3;
-
-/// For each entry of Surface::known_names, whether it has the label.
-std::vector<bool> entries_with(const std::string& label, const Surface& skin,
-                               const std::string& where) {
-  std::vector<bool> has_label;
-  std::set<std::string> all;
-  bool found = false;
-  for (const Names& names : skin.known_names) {
-    all.insert(names.begin(), names.end());
-    has_label.push_back(std::find(names.begin(), names.end(), label) != names.end());
-    found = found || has_label.back();
-  }
-  if (found) return has_label;
-  constexpr std::size_t kListed = 20;  // a painted surface may have thousands of colours
-  std::string list;
-  std::size_t listed = 0;
-  for (const std::string& name : all)
-    if (listed++ < kListed) list += (list.empty() ? "" : ", ") + name;
-  if (all.size() > kListed) list += text(" or ", all.size() - kListed, " more");
-  throw Error(ErrorKind::Configuration, where,
-              text("no face has the name '", label, "', which a support asks for"),
-              all.empty()
-                  ? "name faces by 'g', 'o' or 'usemtl' in an OBJ file, by solids in an STL "
-                    "file of text, by colours in a PLY file, or by an integer cell array in a VTK "
-                    "file"
-                  : text("use one of ", list));
-}
 
 /// The set of this name. @throws Error(Configuration) with the names that there are.
 const std::vector<std::int32_t>& set_named(const std::string& label, const NodeSets& sets,
@@ -61,23 +31,23 @@ struct MarkInside {
   const Settings& settings;
   const Labels& labels;
   const Surface& boundary;
-  double tolerance = kSupportTolerance * settings.element_size;
+  double tolerance = kSupportTolerance * settings.element_size;  ///< by which the shape is wider
+  bool inverted = false;
 
   Marks marks_of(const Zone& zone) const {
-    Marks marks = std::visit(*this, zone.shape);
-    if (zone.inverted)
-      for (std::uint8_t& one : marks) one = one == 0 ? 1 : 0;
-    return marks;
+    if (!zone.inverted) return std::visit(*this, zone.shape);
+    return std::visit(MarkInside{settings, labels, boundary, -tolerance, true}, zone.shape);
   }
 
   template <typename Shape>
   Marks operator()(const Shape& shape) const {
-    return mark([&](const Vec3& x) { return contains(shape, x, tolerance); });
+    return mark([&](const Vec3& x) { return contains(shape, x, tolerance) != inverted; });
   }
 
   Marks operator()(const SurfaceSupport& near) const {
     const SurfaceQuery surface(read_surface(near.surface, settings.log));
-    return mark([&](const Vec3& x) { return is_near(surface, x, near.distance + tolerance); });
+    return mark(
+        [&](const Vec3& x) { return is_near(surface, x, near.distance + tolerance) != inverted; });
   }
 
   /// A point within the tolerance of a named face has that face, or one that shares a corner with
@@ -92,8 +62,8 @@ struct MarkInside {
     const auto lies_on = [&](const Vec3& x, std::int32_t t) {
       const Triangle& triangle = skin.triangles[to_index(t)];
       const auto corner = [&](std::size_t k) { return skin.points[to_index(triangle[k])]; };
-      return has_label[skin.names[to_index(t)]] &&
-             distance_to_triangle(x, corner(0), corner(1), corner(2)) <= tolerance;
+      return has_label[skin.names[to_index(t)]] != inverted &&
+             distance_to_triangle(x, corner(0), corner(1), corner(2)) <= std::abs(tolerance);
     };
     return mark([&](const Vec3& x) {
       const Triangle& nearest = skin.triangles[to_index(query.closest(x).triangle)];
@@ -107,10 +77,10 @@ struct MarkInside {
  private:
   /// The points of the boundary are the first nodes.
   Marks mark_set(const LabelSupport& support) const {
-    Marks marks(boundary.points.size(), 0);
+    Marks marks(boundary.points.size(), inverted ? 1 : 0);
     for (const std::int32_t node :
          set_named(support.label, *labels.node_sets, settings.source().string()))
-      if (to_index(node) < marks.size()) marks[to_index(node)] = 1;
+      if (to_index(node) < marks.size()) marks[to_index(node)] = inverted ? 0 : 1;
     return marks;
   }
 
@@ -138,6 +108,32 @@ std::vector<SupportedPoint> supported_points(const Body& body, const Surface& bo
 }
 
 }  // namespace
+
+std::vector<bool> entries_with(const std::string& label, const Surface& skin,
+                               const std::string& where) {
+  std::vector<bool> has_label;
+  std::set<std::string> all;
+  bool found = false;
+  for (const Names& names : skin.known_names) {
+    all.insert(names.begin(), names.end());
+    has_label.push_back(std::find(names.begin(), names.end(), label) != names.end());
+    found = found || has_label.back();
+  }
+  if (found) return has_label;
+  constexpr std::size_t kListed = 20;  // a painted surface may have thousands of colours
+  std::string list;
+  std::size_t listed = 0;
+  for (const std::string& name : all)
+    if (listed++ < kListed) list += (list.empty() ? "" : ", ") + name;
+  if (all.size() > kListed) list += text(" or ", all.size() - kListed, " more");
+  throw Error(ErrorKind::Configuration, where,
+              text("no face has the name '", label, "', which a support asks for"),
+              all.empty()
+                  ? "name faces by 'g', 'o' or 'usemtl' in an OBJ file, by solids in an STL "
+                    "file of text, by colours in a PLY file, or by an integer cell array in a VTK "
+                    "file"
+                  : text("use one of ", list));
+}
 
 bool all_marked(const Triangle& triangle, const Marks& marks) {
   return std::all_of(triangle.begin(), triangle.end(),

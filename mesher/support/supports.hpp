@@ -23,6 +23,15 @@ bool all_marked(const Triangle& triangle, const Marks& marks);
 /// Marks also what `more` marks.
 void add_marks(Marks& marks, const Marks& more);
 
+/// Nodes on the border of a support are inside it whatever their rounding: this part of
+/// element_size.
+inline constexpr double kSupportTolerance = 1e-3;
+
+/// For each entry of Surface::known_names, whether it has the label.
+/// @throws Error(Configuration) when none has; `where` names the file.
+std::vector<bool> entries_with(const std::string& label, const Surface& skin,
+                               const std::string& where);
+
 /// Whether the shape contains the point; `tolerance` (m) widens it.
 bool contains(const PlaneSupport& plane, const Vec3& point, double tolerance);
 bool contains(const BoxSupport& box, const Vec3& point, double tolerance);

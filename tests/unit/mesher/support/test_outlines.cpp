@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "mesher/support/outlines.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "mesher/geometry/queries.hpp"
+#include "mesher/mesher.hpp"
+#include "mesher/skin/remesh.hpp"
+#include "tests/unit/mesher/body_checks.hpp"
+#include "tests/unit/mesher/shapes.hpp"
+
+namespace palpate::mesher {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kFeatureAngle = kPi / 4;
+
+double length_of(const Surface& surface, const std::vector<Edge>& outline) {
+  double sum = 0;
+  for (const Edge& e : outline)
+    sum += norm(surface.points[static_cast<std::size_t>(e[1])] -
+                surface.points[static_cast<std::size_t>(e[0])]);
+  return sum;
+}
+
+OutlinedSurface outlined(const Surface& skin, const Zone& support, double element_size) {
+  Settings settings;
+  settings.supports = {support};
+  settings.element_size = element_size;
+  return with_outlines(skin, settings);
+}
+
+TEST(Outlines, PlaneCutsASphereAlongACircle) {
+  const Surface ball = test::sphere({0, 0, 0}, 0.05, 240);
+  for (const bool inverted : {false, true}) {
+    const OutlinedSurface cut =
+        outlined(ball, {PlaneSupport{{0, 0, -0.0303}, {0, 0, -1}}, inverted}, 0.01);
+    ASSERT_EQ(cut.parts.size(), 1U);
+    const double radius = std::sqrt(0.05 * 0.05 - 0.0303 * 0.0303);
+    EXPECT_NEAR(length_of(cut.surface, cut.parts[0].outline), 2 * kPi * radius, 1e-3 * radius);
+    for (const Edge& e : cut.parts[0].outline)
+      for (const std::int32_t v : e)
+        EXPECT_NEAR(cut.surface.points[static_cast<std::size_t>(v)][2], -0.0303, 1e-12);
+    EXPECT_NEAR(area(cut.surface), area(ball), 1e-12 * area(ball));
+  }
+}
+
+// No corner of the box lies inside these shapes.
+TEST(Outlines, ShapesInTheMiddleOfATriangleHaveOne) {
+  const Surface box = test::box({0, 0, 0}, {0.1, 0.1, 0.03});
+  const OutlinedSurface ball = outlined(box, SphereSupport{{0.05, 0.05, 0.03}, 0.02}, 0.005);
+  EXPECT_NEAR(length_of(ball.surface, ball.parts[0].outline), 2 * kPi * 0.02,
+              0.005 * 2 * kPi * 0.02);
+  const OutlinedSurface square =
+      outlined(box, BoxSupport{{0.03, 0.02, 0.02}, {0.06, 0.07, 0.04}}, 0.005);
+  EXPECT_NEAR(length_of(square.surface, square.parts[0].outline), 2 * (0.03 + 0.05), 0.03 * 0.16);
+  EXPECT_NEAR(area(square.surface), area(box), 1e-12);
+}
+
+TEST(Outlines, NamedFacesEndAtTheirEdges) {
+  Surface box = test::box({0, 0, 0}, {0.1, 0.08, 0.03});
+  box.known_names = {{"base"}, {"rest"}};
+  for (const Triangle& t : box.triangles)
+    box.names.push_back(area_vector(box.points, t)[2] < -1e-9 ? 0 : 1);
+  const OutlinedSurface named = outlined(box, LabelSupport{"base"}, 0.005);
+  EXPECT_NEAR(length_of(named.surface, named.parts[0].outline), 2 * (0.1 + 0.08), 1e-12);
+}
+
+TEST(Outlines, FixedSupportsThatOverlapHaveOneOutlineAndSpringsTheirOwn) {
+  const Surface ball = test::sphere({0, 0, 0}, 0.05, 240);
+  Settings settings;
+  settings.supports = {PlaneSupport{{0, 0, -0.03}, {0, 0, -1}},
+                       PlaneSupport{{0, 0, -0.02}, {0, 0, -1}}};
+  settings.foundation = {{PlaneSupport{{0, 0, 0.04}, {0, 0, 1}}, 1e5, 1e5}};
+  settings.element_size = 0.01;
+  const OutlinedSurface cut = with_outlines(ball, settings);
+  ASSERT_EQ(cut.parts.size(), 2U);
+  const auto circle = [](double z) { return 2 * kPi * std::sqrt(0.05 * 0.05 - z * z); };
+  EXPECT_NEAR(length_of(cut.surface, cut.parts[0].outline), circle(0.02), 1e-3 * circle(0.02));
+  EXPECT_NEAR(length_of(cut.surface, cut.parts[1].outline), circle(0.04), 1e-3 * circle(0.04));
+}
+
+/// Area of the facets with three fixed nodes.
+double fixed_area(const Body& body) {
+  std::vector<bool> fixed(body.nodes.size(), false);
+  for (const std::int32_t node : body.fixed_nodes) fixed[static_cast<std::size_t>(node)] = true;
+  double sum = 0;
+  for (const Triangle& t : body.boundary)
+    if (std::all_of(t.begin(), t.end(),
+                    [&](std::int32_t v) { return fixed[static_cast<std::size_t>(v)]; }))
+      sum += norm(area_vector(body.nodes, t)) / 2;
+  return sum;
+}
+
+// The cap of a ball beyond a plane has the part h / (2 R) of its area [Archimedes], whichever way
+// the support is described.
+TEST(Outlines, FixedAreaIsThatOfTheSupportForAnyElements) {
+  constexpr double kRadius = 0.05, kHeight = 0.0223;
+  const test::TemporaryFile file("ball.off",
+                                 test::off_text(test::sphere({0, 0, 0}, 1000 * kRadius, 240)));
+  const PlaneSupport beyond{{0, 0, kHeight - kRadius}, {0, 0, -1}};
+  const PlaneSupport before{{0, 0, kHeight - kRadius}, {0, 0, 1}};
+  for (const double size : {0.012, 0.006}) {
+    for (const Zone& support : {Zone(beyond), Zone(before, true)}) {
+      Settings settings;
+      settings.surface = {file.path(), 0.001, "matrix"};
+      settings.supports = {support};
+      settings.method = MeshMethod::Isotropic;
+      settings.patch_spacing = 0.012;
+      settings.element_size = size;
+      const Body body = mesh(settings);
+      test::expect_sound(body);
+      EXPECT_NEAR(fixed_area(body) / test::boundary_area(body), kHeight / (2 * kRadius), 2e-3)
+          << size;
+    }
+  }
+}
+
+// A plane 1 mm above the base of a block: facets of 8 mm cannot follow both.
+TEST(Outlines, ThatRunsBesideASharpEdgeIsLeftOut) {
+  const Surface block = test::box({0, 0, 0}, {0.06, 0.06, 0.03});
+  const OutlinedSurface cut = outlined(block, PlaneSupport{{0, 0, 0.001}, {0, 0, -1}}, 0.008);
+  EXPECT_NEAR(length_of(cut.surface, cut.parts[0].outline), 0.24, 1e-12);
+  std::string log;
+  const NestedSurface nested =
+      remesh(cut.surface, {0.008, 1, kFeatureAngle, false, {cut.parts[0].outline}}, "block",
+             [&](std::string_view line) { log += line; });
+  EXPECT_NE(log.find("240 mm of their outlines run beside an edge"), std::string::npos) << log;
+  EXPECT_EQ(std::none_of(nested.response.points.begin(), nested.response.points.end(),
+                         [](const Vec3& x) { return std::abs(x[2] - 0.001) < 1e-6; }),
+            true);
+}
+
+// A plane across four sharp edges is followed.
+TEST(Outlines, ThatCrossesSharpEdgesIsFollowed) {
+  const Surface block = test::box({0, 0, 0}, {0.06, 0.06, 0.04});
+  const OutlinedSurface cut = outlined(block, PlaneSupport{{0, 0, 0.017}, {0, 0, -1}}, 0.008);
+  const NestedSurface nested =
+      remesh(cut.surface, {0.008, 1, kFeatureAngle, false, {cut.parts[0].outline}}, "block", {});
+  double below = 0;
+  for (const Triangle& t : nested.boundary.triangles) {
+    const auto z = [&](std::size_t k) {
+      return nested.boundary.points[static_cast<std::size_t>(t[k])][2];
+    };
+    if (std::max({z(0), z(1), z(2)}) < 0.017 + 1e-9)
+      below += norm(area_vector(nested.boundary.points, t)) / 2;
+  }
+  EXPECT_NEAR(below, 0.06 * 0.06 + 4 * 0.06 * 0.017, 1e-10);
+}
+
+}  // namespace
+}  // namespace palpate::mesher
