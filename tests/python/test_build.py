@@ -131,7 +131,7 @@ class Case(unittest.TestCase):
         os.chdir(self.root)
         with contextlib.redirect_stdout(said):
             for program in programs:
-                for shown, used in (("data/cases/liver.toml", self.case), ("out/liver", self.root / "out"), ("404", site),
+                for shown, used in (("data/cases/liver.toml", self.case), ("out/liver", self.root / "out"), ("444", site),
                                     ("my.toml", self.case)):
                     program = program.replace(shown, str(used))
                 exec(compile(program, PAGE.name, "exec"), names)  # noqa: S102: our own page
