@@ -78,17 +78,17 @@ inline Library body_named(const std::string& name) {
     return relaxing(growing_unevenly(bumpy_sphere(3, 0.03, 0.25, bent(0.4))), {0.01, 0.1, 1},
                     false);
   }
-  if (name == "leaning") return leaning(coupled(bumpy_sphere(3, 0.03, 0.25, varying(0.3))), 0.2);
+  if (name == "leaning") return leaning(coupled(bumpy_sphere(2, 0.03, 0.25, varying(0.3))), 0.2);
   if (name == "leaning_rims") return leaning(cylinder(25, 20, 0.04, 0.2, varying(0.5)), 0.2);
   if (name == "leaning_thin")
     return leaning(coupled(thin_body(8, 0.08, 0.0015, varying(0.5))), 0.2);
   if (name == "leaning_relaxing")
-    return leaning(relaxing(bumpy_sphere(3, 0.03, 0.25, bent(0.4)), {0.01, 0.1, 1}, false), 0.2);
+    return leaning(relaxing(bumpy_sphere(2, 0.03, 0.25, bent(0.4)), {0.01, 0.1, 1}, false), 0.2);
   if (name == "soft")
-    return soft_axes(leaning(coupled(bumpy_sphere(3, 0.03, 0.25, varying(0.3))), 0.15), 0.6);
+    return soft_axes(leaning(coupled(bumpy_sphere(2, 0.03, 0.25, varying(0.3))), 0.15), 0.6);
   if (name == "soft_thin") return soft_axes(coupled(thin_body(8, 0.08, 0.0015, varying(0.5))), 0.6);
   if (name == "soft_relaxing") {
-    return soft_axes(leaning(relaxing(growing_unevenly(bumpy_sphere(3, 0.03, 0.25, bent(0.4))),
+    return soft_axes(leaning(relaxing(growing_unevenly(bumpy_sphere(2, 0.03, 0.25, bent(0.4))),
                                       {0.01, 0.1, 1}, false),
                              0.15),
                      0.6);
