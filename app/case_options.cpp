@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "app/case_options.hpp"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cctype>
 #include <thread>
 
 #include "app/console.hpp"
@@ -23,6 +26,22 @@ Unit unit_of_coordinates(const mesher::Settings& mesh) {
   return unit_of_length(mesh.surface.path.empty() ? 1e-3 : mesh.surface.unit);
 }
 
+bool is_size(std::string text) {
+  try {
+    return CLI::AsSizeValue(true)(text).empty();
+  } catch (const CLI::ValidationError&) {
+    return false;
+  }
+}
+
+/// "" for a number with its unit, "8GB" or "500 MiB": 8 alone would be bytes.
+std::string problem_of_size(const std::string& text) {
+  const bool has_unit =
+      std::any_of(text.begin(), text.end(), [](unsigned char c) { return std::isalpha(c) != 0; });
+  if (has_unit && is_size(text)) return {};
+  return fmt::format("'{}' is no number with a unit of memory; write for example 8GB", text);
+}
+
 }  // namespace
 
 std::shared_ptr<CaseOptions> add_case_options(CLI::App& command, ThreadsOption threads) {
@@ -37,6 +56,7 @@ std::shared_ptr<CaseOptions> add_case_options(CLI::App& command, ThreadsOption t
         .add_option("--memory", options->memory,
                     "Memory that the process may use, e.g. 8GB; fewer sites then run concurrently")
         ->transform(CLI::AsSizeValue(true))
+        ->transform(CLI::Validator(problem_of_size, ""))
         ->option_text("SIZE");
   }
   return options;

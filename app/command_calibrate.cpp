@@ -228,9 +228,11 @@ void add_calibrate_command(CLI::App& root, Action& action) {
       "calibrate", "Identifies constants of a law from measurements, with confidence intervals");
   command->footer("Example: palpate calibrate tests data/measured/treloar-1944/ogden.toml");
   command->require_subcommand(1);
-  CLI::App* tests = command->add_subcommand("tests",
-                                            "Identifies constants from homogeneous tests: "
-                                            "uniaxial, equibiaxial, pure shear, simple shear");
+  CLI::App* tests =
+      command->add_subcommand("tests",
+                              "Identifies constants from homogeneous tests: "
+                              "uniaxial, equibiaxial, pure shear, simple shear, confined "
+                              "compression");
   tests->footer("Example: palpate calibrate tests data/measured/treloar-1944/ogden.toml");
   const auto options = std::make_shared<CalibrateOptions>();
   tests->add_option("FIT", options->fit_file, "Fit file (TOML), see docs/measured.md")->required();

@@ -29,7 +29,7 @@ struct SlabOptions {
   std::vector<double> stiffening;
   std::vector<int> points{5, 6};
   double poisson = 0.49, confidence = 0.95;
-  int depths = 6, threads = 1;
+  int depths = 6, threads = 0;
 };
 
 double length_of(const std::string& text) {
@@ -61,7 +61,7 @@ SlabTableSettings table_settings(const SlabOptions& options, const Curves& measu
   }
   settings.stiffenings = options.points[0];
   settings.thicknesses = options.points[1];
-  settings.threads = options.threads;
+  settings.threads = options.threads > 0 ? options.threads : processors();
   settings.advanced = [](int done, int all) {
     if (done == all || done % 10 == 0) say("  {} of {} slabs are pressed", done, all);
   };
@@ -184,13 +184,13 @@ void add_calibrate_slab(CLI::App& calibrate, Action& action) {
       ->check(CLI::Range(0.0, 0.499));
   part->add_option("--depths", options->depths, "Number of depths of each curve that are compared")
       ->capture_default_str()
-      ->check(CLI::Range(2, 50));
+      ->check(CLI::Range(2, 200));
   part->add_option("--confidence", options->confidence, "Confidence level of the intervals")
       ->capture_default_str()
       ->check(CLI::Range(0.5, 0.9999));
-  part->add_option("--threads", options->threads, "Slabs that are pressed at once")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 1024));
+  part->add_option("--threads", options->threads,
+                   "Slabs that are pressed at once (default: one for each processor)")
+      ->check(CLI::Range(1, 4096));
   part->add_option(
       "--out", options->out,
       "Folder of calibration.json, correlations.csv, calibration.html and curves.h5, the "

@@ -59,7 +59,7 @@ void add_check_command(CLI::App& root, Action& action) {
   const auto options = std::make_shared<CheckOptions>();
   command->add_option("FILE", options->file, "Surface (OFF, OBJ, PLY, STL, VTP, VTK)")->required();
   command->add_option("--unit", options->unit,
-                      "Length unit of FILE: mm, cm, dm, um, in or m (default: a guess)");
+                      "Length unit of FILE: mm, cm, dm, um, nm, in or m (default: a guess)");
   command->add_flag("--largest-part", options->largest_part,
                     "Of several parts keep the one with the largest area, as parts = \"largest\"");
   command->add_option("--out", options->out, "PLY file to write the repaired surface to");

@@ -10,7 +10,9 @@
 #include "app/compare/leave_out.hpp"
 #include "app/compare/tables.hpp"
 #include "app/console.hpp"
+#include "app/pipeline/settings.hpp"
 #include "app/pipeline/stage_input.hpp"
+#include "app/pipeline/stages.hpp"
 #include "app/pipeline/workspace.hpp"
 #include "format/artifact.hpp"
 #include "format/body.hpp"
@@ -139,6 +141,11 @@ int compare_left_out(CompareOptions options) {
   options.left_out.out = options.out;
   options.settings.jnd_floor = 1e-3 * options.jnd_floor_mn;
   const Workspace space = open_workspace(options.left_out);
+  if (!is_measured(space)) {
+    refuse("case " + space.c.name, "has no [measured]: --leave-out is for measured sites",
+           "compare a simulated one with --fem");
+  }
+  refuse_body_of_another_case(space);
   const Library library = read_input(space.library(), "build", read_library);
   const Curves curves = read_input(space.curves(), "build", read_curves);
   const LeaveOut result = leave_sites_out(library, curves);

@@ -11,6 +11,7 @@
 #include "app/export/mesh_file.hpp"
 #include "app/pipeline/freshness.hpp"
 #include "app/pipeline/settings.hpp"
+#include "app/simulate/script.hpp"
 #include "app/vtkhdf/grids.hpp"
 #include "fem/campaign/bonded_patch.hpp"
 #include "fem/relaxation/relaxing_press.hpp"
@@ -76,8 +77,11 @@ int export_curves(const Workspace& space) {
 }
 
 int export_library(const Workspace& space) {
-  write(vtkhdf::library_grid(read_library(space.library()), space.c.campaign.indentation.depth),
-        space.out / "library.vtkhdf");
+  const Library library = read_library(space.library());
+  // A measured case has no depth of its own.
+  const double depth =
+      is_measured(space) ? depth_of_responses(library) : space.c.campaign.indentation.depth;
+  write(vtkhdf::library_grid(library, depth), space.out / "library.vtkhdf");
   return kExitDone;
 }
 
@@ -317,7 +321,7 @@ void add_site_part(CLI::App& parent, Action& action) {
                  const bool decks = options->calculix || options->febio;
                  return decks ? export_decks(space, *options) : export_site(space, options->vertex);
                });
-  site->footer("Example: palpate export site data/cases/cylinder.toml --vertex 12");
+  site->footer("Example: palpate export site data/cases/cylinder.toml --vertex 160");
   site->add_option("--vertex", options->vertex, "Response vertex, as in curves.csv")->required();
   CLI::Option* calculix =
       site->add_flag("--calculix", options->calculix, "Write site-N.inp for CalculiX");
@@ -347,7 +351,7 @@ void add_export_command(CLI::App& root, Action& action) {
   CLI::App* command = root.add_subcommand("export",
                                           "Exports artifacts to ParaView (VTKHDF), CSV, CalculiX "
                                           "and FEBio, and libraries for the runtime");
-  command->footer("Example: palpate export site data/cases/cylinder.toml --vertex 12");
+  command->footer("Example: palpate export site data/cases/cylinder.toml --vertex 160");
   command->require_subcommand(1);
   add_part(*command, action, "body", "body.h5 -> body.vtkhdf", export_body);
   const auto format = std::make_shared<std::string>("gmsh");
@@ -370,6 +374,7 @@ void add_export_command(CLI::App& root, Action& action) {
   add_part(*command, action, "skin",
            "deformation.pdef -> skin.pdef, the same on the vertices of the response surface alone",
            [modes](const Workspace& space) { return export_skin(space, *modes); })
+      ->footer("Example: palpate export skin data/cases/liver.toml")
       ->add_option("--modes", *modes, "Largest number of shapes that the skin is blended from")
       ->check(CLI::Range(1, 512))
       ->capture_default_str();

@@ -69,9 +69,10 @@ void add_init_command(CLI::App& root, Action& action) {
       ->required();
   command->add_option("-o,--output", options->output,
                       "Case file to write (default: name of FILE, .toml, in the current folder)");
-  command->add_option("--unit", options->unit,
-                      "Length unit of FILE: mm, cm, dm, um, in or m (default: what FILE states, "
-                      "else a guess from its size)");
+  command->add_option(
+      "--unit", options->unit,
+      "Length unit of FILE: mm, cm, dm, um, nm, in or m (default: what FILE states, "
+      "else a guess from its size)");
   command
       ->add_option("--sites", options->sites,
                    "About how many sites the case has (default: 200, or fewer to save time)")

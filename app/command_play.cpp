@@ -10,6 +10,7 @@
 #include "app/play/drawn.hpp"
 #include "app/play/shipped.hpp"
 #include "app/report/play_page.hpp"
+#include "app/run/device_choice.hpp"
 
 namespace palpate::app {
 namespace {
@@ -37,8 +38,9 @@ int play(const PlayOptions& options) {
   if (options.library.empty()) return list_shipped();
   const std::filesystem::path file = chosen_library(options.library, shipped_folder());
   if (!options.device.empty()) {
-    answer("play: on a device: palpate run {} --device {} --profile PROFILE", file.string(),
-           options.device);
+    require_known_device(options.device);
+    answer("play: on a device: palpate run {} --device {}{}", file.string(), options.device,
+           options.device == kSimulatedDevice ? "" : " --profile PROFILE");
     return kExitDone;
   }
   const Library library = read_library(file);

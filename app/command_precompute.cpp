@@ -42,12 +42,14 @@ void add_precompute_command(CLI::App& root, Action& action) {
   command->add_option(
       "--shard", options->shard,
       "I/N: compute only the I-th of N parts of the sites and write curves.I-of-N.h5; see merge");
-  command->add_option("--convergence", options->convergence,
-                      "N: instead, press some sites on N meshes, that of the case and finer ones, "
-                      "and extrapolate the "
-                      "forces; writes convergence.csv");
+  CLI::Option* convergence = command->add_option(
+      "--convergence", options->convergence,
+      "N: instead, press some sites on N meshes, that of the case and finer ones, "
+      "and extrapolate the "
+      "forces; writes convergence.csv");
   command->add_option("--sites", options->sites, "Sites of --convergence (default: three)")
-      ->delimiter(',');
+      ->delimiter(',')
+      ->needs(convergence);
   command->add_flag("--strict", options->strict, kStrictHelp);
   command->add_flag("--estimate", options->estimate, kEstimateHelp);
   command->callback([common, options, &action] {

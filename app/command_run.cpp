@@ -14,6 +14,7 @@
 #include "app/console.hpp"
 #include "app/pipeline/device_profile.hpp"
 #include "app/pipeline/workspace.hpp"
+#include "app/play/shipped.hpp"
 #include "app/record/relaxation_at_rate.hpp"
 #include "app/record/report_recovery.hpp"
 #include "app/record/session_recorder.hpp"
@@ -182,6 +183,7 @@ int run(RunOptions options) {
   }
   require_known_device(options.device.name);
   enter_options(options);
+  options.library = chosen_library(options.library, shipped_folder()).string();
   const Library library = read_library(options.library);
   const palpate_library body(library);
   settle(options, library, body);
@@ -216,7 +218,8 @@ void add_device_options(CLI::App& command, RunOptions& o) {
 void add_loop_options(CLI::App& command, RunOptions& o) {
   command.add_option("--rate", o.live.loop.rate,
                      "Sampling rate of the force loop, Hz (default: 1000)");
-  command.add_option("--duration", o.live.duration, "s from the first step; 0: until Ctrl-C");
+  command.add_option("--duration", o.live.duration,
+                     "s from the first step; 0, the default: until Ctrl-C");
   command.add_option("--friction", o.friction,
                      "Friction coefficient (default: that of the certificate)");
   command.add_option("--max-force", o.max_force,
@@ -225,22 +228,25 @@ void add_loop_options(CLI::App& command, RunOptions& o) {
   command.add_option("--tank-cap-mJ", o.tank_cap_mj,
                      "mJ, cap of the energy tank, which lets a slide use what friction has taken; "
                      "0: none (default: 5)");
-  command.add_option("--max-speed", o.live.safety.max_speed,
-                     "m/s, speed of the device beyond which the force is switched off");
-  command.add_option("--ramp", o.live.safety.ramp, "s, duration of the force ramp at the start");
+  command.add_option(
+      "--max-speed", o.live.safety.max_speed,
+      "m/s, speed of the device beyond which the force is switched off (default: 3)");
+  command.add_option("--ramp", o.live.safety.ramp,
+                     "s, duration of the force ramp at the start (default: 0.5)");
   command.add_option("--watchdog", o.watchdog,
                      "s without a step or a new sample until the force is cut off (default: 20 "
                      "periods of the loop)");
   command
       .add_option("--priority", o.live.loop.realtime.priority,
-                  "SCHED_FIFO priority; 0: ordinary scheduler")
+                  "SCHED_FIFO priority (default: 80); 0: ordinary scheduler")
       ->check(CLI::Range(0, 99));
   command.add_option("--core", o.live.loop.realtime.core, "CPU core of the force loop")
       ->check(CLI::Range(0, 4095));
   command.add_option("--wake-early-us", o.wake_early_us,
                      "us before a step is due at which the loop wakes, to read the clock until it "
-                     "is due; 0: it sleeps until then");
-  command.add_option("--search-rate", o.live.search_rate, "Rate of the search thread, Hz; 0: none");
+                     "is due; 0, the default: it sleeps until then");
+  command.add_option("--search-rate", o.live.search_rate,
+                     "Rate of the search thread, Hz (default: 100); 0: none");
   command
       .add_option("--at-mm", o.at_mm,
                   "Position of the origin of the body in device coordinates: X Y Z")
@@ -252,11 +258,13 @@ void add_loop_options(CLI::App& command, RunOptions& o) {
 }  // namespace
 
 void add_run_command(CLI::App& root, Action& action) {
-  CLI::App* command = root.add_subcommand("run", "Render library.h5 on a device in real time");
+  CLI::App* command =
+      root.add_subcommand("run", "Render a response library on a device in real time");
   command->footer(
       "Example: palpate run out/cylinder/library.h5 --device force-dimension --profile my.toml");
   const auto options = std::make_shared<RunOptions>();
-  command->add_option("LIBRARY", options->library, "Response library (library.h5)");
+  command->add_option("LIBRARY", options->library,
+                      "Name of a ready-made library, a library.h5, a .plib or a folder with one");
   add_device_options(*command, *options);
   add_loop_options(*command, *options);
   command->callback([options, &action] { action = [options] { return run(*options); }; });

@@ -90,9 +90,11 @@ int parse_and_run(int count, char** arguments) {
   CLI::App root{"palpate: precomputes the indentation of a soft body and renders it in real time",
                 "palpate"};
   root.footer(
-      "Exit codes: 0 success, 1 internal error, 2 usage or configuration,\n"
-      "3 unusable geometry, 4 finished, but too many sites ended early (with\n"
-      "--strict: any), records were refused or a journal was damaged.\n"
+      "Exit codes: 0 success, 1 internal error, 2 usage, configuration, files\n"
+      "or device, 3 unusable geometry, 4 finished, but incomplete: too many\n"
+      "sites ended early (with --strict: any), hold-out points failed, records\n"
+      "were refused, a constant was not identified, a journal was damaged, or\n"
+      "with --strict a session went beyond the computed depth.\n"
       "'palpate help SUBCOMMAND' explains a subcommand; --quiet and --verbose\n"
       "stand before or after it.\n"
       "Example: palpate build data/cases/liver.toml");

@@ -156,7 +156,7 @@ void check_materials(const Case& c, const SourceMap& sources) {
     const std::string where = sources.where(prefix("material", i) + "region");
     if (knows_regions && std::find(regions.begin(), regions.end(), region) == regions.end()) {
       refuse(where, fmt::format("material for region '{}', which no surface bounds", region),
-             fmt::format("the nearest region is '{}'", nearest(region, regions)));
+             meant_instead(region, regions, "the nearest region"));
     }
     if (!described.insert(region).second) {
       refuse(where, fmt::format("second material for region '{}'", region),

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "app/case/nearest.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <numeric>
 
@@ -27,6 +30,17 @@ std::string_view nearest(std::string_view word, const std::vector<std::string_vi
         return edit_distance(word, a) < edit_distance(word, b);
       });
   return closest == known.end() ? std::string_view{} : *closest;
+}
+
+bool is_like(std::string_view word, std::string_view other) {
+  return 2 * edit_distance(word, other) <= other.size();
+}
+
+std::string meant_instead(std::string_view word, const std::vector<std::string_view>& known,
+                          std::string_view what) {
+  const std::string_view other = nearest(word, known);
+  if (is_like(word, other)) return fmt::format("{} is '{}'", what, other);
+  return fmt::format("known are {}", fmt::join(known, ", "));
 }
 
 }  // namespace palpate::app

@@ -14,4 +14,12 @@ std::size_t edit_distance(std::string_view a, std::string_view b);
 /// none.
 std::string_view nearest(std::string_view word, const std::vector<std::string_view>& known);
 
+/// Whether `word` may be meant for `other`: no more than half of that is mistyped.
+bool is_like(std::string_view word, std::string_view other);
+
+/// What to write instead of a word that is not known: "WHAT is 'y'" where it is like the nearest,
+/// y, else "known are" and the list.
+std::string meant_instead(std::string_view word, const std::vector<std::string_view>& known,
+                          std::string_view what);
+
 }  // namespace palpate::app

@@ -108,10 +108,10 @@ void TableReader::finish() const {
   for (const auto& [name, node] : table_) {
     if (std::find(known_.begin(), known_.end(), name.str()) != known_.end()) continue;
     const std::string_view meant = nearest(name.str(), known_);
-    const bool is_misspelt = 2 * edit_distance(name.str(), meant) <= meant.size();
+    const bool is_misspelt = is_like(name.str(), meant);
     if (!missing_.empty() && !is_misspelt) continue;
     refuse(sources_.where(node), fmt::format("unknown key '{}' in {}", name.str(), title_),
-           fmt::format("the nearest known key is '{}'", meant));
+           meant_instead(name.str(), known_, "the nearest known key"));
   }
   if (missing_.empty()) return;
   const auto& [key, choices] = missing_.front();
@@ -169,7 +169,9 @@ void TableReader::text(std::string& value, const Key& key, const Choices& choice
   refuse(sources_.where(*node),
          fmt::format("key '{}' is '{}', which is not one of {}", dotted(key), value,
                      choices_text(choices)),
-         fmt::format("the nearest is '{}'", nearest(value, choices)));
+         is_like(value, nearest(value, choices))
+             ? fmt::format("the nearest is '{}'", nearest(value, choices))
+             : "write one of them");
 }
 
 void TableReader::texts(std::vector<std::string>& values, const Key& key) {

@@ -37,8 +37,8 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// Whether a word may be meant for another: at most a third of it is mistyped.
-bool is_like(std::string_view word, std::string_view other) {
+/// Whether a word may be mistyped for another.
+bool is_near(std::string_view word, std::string_view other) {
   return edit_distance(word, other) <= std::max<std::size_t>(2, word.size() / 3);
 }
 
@@ -49,7 +49,7 @@ std::string closest(const std::string& word, const std::vector<std::string>& kno
   if (longer != known.end() && std::find_if(longer + 1, known.end(), begins_alike) == known.end())
     return *longer;
   const std::string_view other = nearest(word, {known.begin(), known.end()});
-  return is_like(word, other) ? std::string(other) : std::string();
+  return is_near(word, other) ? std::string(other) : std::string();
 }
 
 /// @param help the words that explain the command

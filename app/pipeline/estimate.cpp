@@ -90,6 +90,8 @@ void estimate(const Workspace& space, const Body& body, const EventSink& emit) {
 }  // namespace
 
 void estimate_build(const Workspace& space, const EventSink& emit) {
+  campaign_settings(space);  // refuses measured bodies
+  check_inputs(space, Stage::Certify);
   const Body body = mesher::mesh(mesh_settings(space));
   estimate(space, body, emit);
 }

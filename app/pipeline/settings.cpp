@@ -151,6 +151,11 @@ fitting::CertifySettings certify_settings(const Workspace& space) {
   return settings;
 }
 
+void check_inputs(const Workspace& space, Stage last) {
+  if (last >= Stage::Precompute && !is_measured(space)) campaign_settings(space);
+  if (last >= Stage::Certify) certify_settings(space);
+}
+
 std::vector<fs::path> stage_inputs(const Workspace& space, Stage stage) {
   std::vector<fs::path> inputs;
   switch (stage) {

@@ -36,6 +36,10 @@ fitting::FitSettings fit_settings(const Workspace& space);
 /// Reads the device profiles. @throws Error(Configuration).
 fitting::CertifySettings certify_settings(const Workspace& space);
 
+/// Reads the files that stages up to `last` need beside the artifacts, fibres and device profiles:
+/// a fault of theirs is to end a campaign of hours before it begins. @throws Error(Configuration).
+void check_inputs(const Workspace& space, Stage last);
+
 /// The files that a stage reads, in the order of its provenance.
 std::vector<std::filesystem::path> stage_inputs(const Workspace& space, Stage stage);
 

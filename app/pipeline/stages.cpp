@@ -96,7 +96,15 @@ void check_regions(const Workspace& space, const Body& body) {
   }
 }
 
-/// Two cases that share a folder would replace each other's body, and lose its campaign.
+/// A line of the mesher's log as an event.
+void emit_log(const std::string& stage, std::string_view text, const EventSink& emit) {
+  if (!text.starts_with(mesher::kWarningMark)) return emit(LogLine{stage, std::string(text)});
+  text.remove_prefix(mesher::kWarningMark.size());
+  emit(Warning{stage, std::string(text)});
+}
+
+}  // namespace
+
 void refuse_body_of_another_case(const Workspace& space) {
   if (!std::filesystem::exists(space.body())) return;
   std::string other;
@@ -110,15 +118,6 @@ void refuse_body_of_another_case(const Workspace& space) {
          "holds the artifacts of case '" + other + "', not of '" + space.c.name + "'",
          "choose another folder with --out, or remove this one");
 }
-
-/// A line of the mesher's log as an event.
-void emit_log(const std::string& stage, std::string_view text, const EventSink& emit) {
-  if (!text.starts_with(mesher::kWarningMark)) return emit(LogLine{stage, std::string(text)});
-  text.remove_prefix(mesher::kWarningMark.size());
-  emit(Warning{stage, std::string(text)});
-}
-
-}  // namespace
 
 SiteCounts count_sites(const Curves& curves) {
   SiteCounts counts;
@@ -329,6 +328,7 @@ void run_certify_at_rate(const Workspace& space, const RateOptions& options,
 }
 
 SiteCounts run_build(const Workspace& space, Stage last, const EventSink& emit) {
+  check_inputs(space, last);
   prepare_output(space.out);
   refresh(space, Stage::Mesh, space.body(), read_body, run_mesh, emit);
   if (last == Stage::Mesh) return {};

@@ -14,6 +14,10 @@ namespace palpate::app {
 
 SiteCounts count_sites(const Curves& curves);
 
+/// Where the folder of the artifacts holds those of another case: two that share one would replace
+/// each other's body, and lose its campaign. @throws Error(Configuration).
+void refuse_body_of_another_case(const Workspace& space);
+
 void run_mesh(const Workspace& space, const EventSink& emit);
 
 /// Writes every computed site to the journal at once; continues an interrupted run.

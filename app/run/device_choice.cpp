@@ -46,10 +46,10 @@ const DeviceName* named_in_a_description(const std::string& word) {
   return nullptr;
 }
 
-std::string nearest_name(const std::string& name) {
+std::string instead_of(const std::string& name) {
   std::vector<std::string_view> known;
   for (const DeviceName& device : device_names()) known.push_back(device.name);
-  return std::string(nearest(name, known));
+  return meant_instead(name, known, "the nearest");
 }
 
 }  // namespace
@@ -69,9 +69,8 @@ void require_known_device(const std::string& name) {
     if (device.name == name) return;
   const DeviceName* named = named_in_a_description(name);
   throw Error(ErrorKind::Configuration, "--device", "'" + name + "' is not known",
-              named != nullptr
-                  ? "it is one of '" + named->name + "': " + named->about
-                  : "the nearest is '" + nearest_name(name) + "'; see palpate run --list");
+              named != nullptr ? "it is one of '" + named->name + "': " + named->about
+                               : instead_of(name) + "; see palpate run --list");
 }
 
 std::unique_ptr<runtime::Device> make_device(

@@ -20,8 +20,9 @@ void add_device_choice(CLI::App& command, DeviceChoice& choice) {
   command.add_option("--unit", choice.unit,
                      "Which of several devices: number, name or serial number");
   command.add_option("--lab", choice.lab_file, "Configuration of a lab-built device (TOML)");
-  command.add_option("--host", choice.host, "Address of the Haply Inverse Service");
-  command.add_option("--port", choice.port, "Address of the Haply Inverse Service");
+  command.add_option("--host", choice.host,
+                     "Address of the Haply Inverse Service (default: localhost)");
+  command.add_option("--port", choice.port, "Port of the Haply Inverse Service (default: 10001)");
 }
 
 }  // namespace palpate::app

@@ -205,8 +205,8 @@ void keep_sites_in_zones(Body& body, const Settings& settings, const Labels& lab
     body.response.is_site[v] = 0;
     ++taken;
   }
-  note(settings.log,
-       text("press zones: ", counted(taken, "vertex", "vertices"), " outside them no site"));
+  note(settings.log, text("press zones: ", counted(taken, "vertex", "vertices"), " outside them ",
+                          taken == 1 ? "is no site" : "are no sites"));
 }
 
 Marks set_foundation(Body& body, const Settings& settings, const Labels& labels,

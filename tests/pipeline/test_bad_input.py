@@ -90,7 +90,24 @@ class BadInput(unittest.TestCase):
     def test_surface_is_missing(self):
         path = write_case(self.root)
         (self.root / "block.off").unlink()
-        self.refuse(GEOMETRY, ["block.off"], "build", path, "--out", self.out)
+        self.refuse(USAGE, ["block.off", "no such file"], "build", path, "--out", self.out)
+
+    def test_a_device_profile_that_is_missing_ends_nothing_but_the_command(self):
+        """It is needed by the last stage alone, after the campaign."""
+        case = CASE.replace("device.toml", "none.toml")
+        self.refuse_case(USAGE, ["none.toml", "cannot read the device profile"], case)
+        self.refuse(USAGE, ["none.toml"], "build", self.root / "block.toml", "--out", self.out, "--estimate")
+
+    def test_memory_without_a_unit(self):
+        path = write_case(self.root)
+        for size in ("8", "8XB", "much"):
+            self.refuse(USAGE, ["--memory", f"'{size}'", "8GB"], "build", path, "--out", self.out, "--memory", size)
+
+    def test_sites_without_convergence(self):
+        self.refuse(USAGE, ["--sites", "--convergence"], "precompute", write_case(self.root), "--out", self.out, "--sites", 3)
+
+    def test_a_word_that_is_like_no_key_is_answered_with_the_keys(self):
+        self.refuse_case(USAGE, ["'colour'", "known are", "moduli"], CASE.replace("young =", 'colour = "red"\nyoung ='))
 
     def refuse_faces(self, words, surface, case=CASE):
         """The refusal names a file with the faulty faces."""

@@ -50,6 +50,13 @@ def slide(x, y, depth, travel, steps=200):
     return press(x, y, depth) + [(x + travel * i / steps, y, 0.02 - depth) for i in range(1, steps + 1)]
 
 
+def read_off(file):
+    """Vertices in metres, and triangles."""
+    lines = [line.split() for line in file.read_text().splitlines() if not line.startswith("#")]
+    vertices = int(lines[1][0])
+    return [tuple(map(float, line)) for line in lines[2:2 + vertices]], [tuple(map(int, line[1:])) for line in lines[2 + vertices:]]
+
+
 class Libraries(unittest.TestCase):
     def test_each_has_a_case_and_a_licence_and_all_are_small(self):
         files = sorted(LIBRARIES.glob("*.plib"))
@@ -62,6 +69,15 @@ class Libraries(unittest.TestCase):
             self.assertEqual(shown.returncode, 0, shown.stderr)
             made_of = (CASES / f"{file.stem}.toml").read_text()
             self.assertIn(f'name = "{file.stem}"', made_of)
+
+    def test_each_has_the_surface_of_its_case(self):
+        for file in LIBRARIES.glob("*.plib"):
+            with tempfile.TemporaryDirectory() as folder:
+                for words in (["mesh"], ["export", "surface"]):
+                    subprocess.run([PALPATE, *words, CASES / f"{file.stem}.toml", "--out", folder], check=True, capture_output=True)
+                made, shipped = (read_off(f) for f in (pathlib.Path(folder) / "surface.off", file.with_suffix(".off")))
+            self.assertEqual((len(made[0]), made[1]), (len(shipped[0]), shipped[1]), file.name)
+            self.assertLess(max(math.dist(a, b) for a, b in zip(made[0], shipped[0])), 1e-8, file.name)  # written to 1 nm
 
     def test_the_skin_of_the_liver_is_that_of_its_library(self):
         skin, library = (json.loads(subprocess.run([PALPATE, "inspect", LIBRARIES / f"liver.{kind}", "--json"], check=True,

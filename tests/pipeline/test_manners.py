@@ -89,7 +89,7 @@ class Manners(unittest.TestCase):
             self.assertEqual((quiet.returncode, quiet.stdout, quiet.stderr), (DONE, "", ""))
         self.assertTrue(first.exists())
         refused = palpate("check", self.root / "none.off", "-q")
-        self.assertEqual((refused.returncode, refused.stdout), (GEOMETRY, ""))
+        self.assertEqual((refused.returncode, refused.stdout), (USAGE, ""))
         self.assertTrue(refused.stderr.startswith("error: "), refused.stderr)
         inspect = ["inspect", self.out / "body.h5"]
         self.assertEqual(palpate(*inspect, "-q").stdout, palpate(*inspect).stdout)
@@ -166,6 +166,11 @@ class Manners(unittest.TestCase):
         self.assertEqual(refused.returncode, USAGE, refused.stderr)
         self.assertIn("holds the artifacts of case 'block', not of 'other'", refused.stderr)
         self.assertEqual((self.out / "body.h5").read_bytes(), before)
+
+    def test_sites_are_left_out_of_measured_cases_alone(self):
+        refused = palpate("compare", "--leave-out", self.case, "--out", self.out)
+        self.assertEqual(refused.returncode, USAGE)
+        self.assertIn("has no [measured]", refused.stderr)
 
     def test_positions_are_in_the_unit_of_the_surface(self):
         folder = self.root / "metres"

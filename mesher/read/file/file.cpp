@@ -25,10 +25,11 @@ void check_readable(const std::filesystem::path& path) {
   const std::string where = path.string();
   std::error_code failure;
   if (!std::filesystem::exists(path, failure)) {
-    refuse_geometry(where, "no such file", "correct the path");
+    throw Error(ErrorKind::Configuration, where, "no such file", "correct the path");
   }
   if (!std::filesystem::is_regular_file(path, failure) || !std::ifstream(path)) {
-    refuse_geometry(where, "not a readable file", "check its type and its permissions");
+    throw Error(ErrorKind::Configuration, where, "not a readable file",
+                "check its type and its permissions");
   }
 }
 

@@ -12,6 +12,8 @@ TEST(Nearest, FindsTheWordThatWasMeant) {
   EXPECT_EQ(edit_distance("same", "same"), 0U);
   EXPECT_EQ(nearest("yuong", {"poisson", "young", "law"}), "young");
   EXPECT_EQ(nearest("x", {}), "");
+  EXPECT_EQ(meant_instead("yuong", {"poisson", "young"}, "the nearest"), "the nearest is 'young'");
+  EXPECT_EQ(meant_instead("colour", {"law", "moduli"}, "the nearest"), "known are law, moduli");
 }
 
 }  // namespace
