@@ -29,6 +29,7 @@ namespace {
 struct Way {
   std::string name;
   std::function<Discretization()> run;
+  bool follows_supports = false;
 };
 
 int subdivisions_of(const Settings& settings) {
@@ -128,7 +129,8 @@ std::vector<Way> ways(const Settings& settings, const Surface& skin,
     if (has_outline)
       result.push_back(
           {"isotropic remeshing along the outlines of supports",
-           [&] { return by_remeshing(settings, outlined.surface, outlined.parts, inclusions); }});
+           [&] { return by_remeshing(settings, outlined.surface, outlined.parts, inclusions); },
+           true});
     result.push_back(
         {"isotropic remeshing", [&] { return by_remeshing(settings, skin, {}, inclusions); }});
   }
@@ -158,7 +160,11 @@ Discretization discretize(const Settings& settings, const Surface& skin,
       return result;
     } catch (const Error& error) {
       if (error.kind() == ErrorKind::Configuration) throw;
-      note(settings.log, text(way.name, " does not make a sound mesh: ", error.problem()));
+      const std::string failure = text(way.name, " does not make a sound mesh: ", error.problem());
+      if (way.follows_supports)
+        warn(settings.log, failure + "; supports end up to an element short of their outlines");
+      else
+        note(settings.log, failure);
       problems += text(problems.empty() ? "" : "; ", way.name, ": ", error.problem());
       remedy = error.remedy();
     }

@@ -25,7 +25,8 @@
 namespace palpate::mesher {
 namespace {
 
-/// Largest edge of a smooth surface over element_size: its facets bend less than elements do.
+/// Largest edge of a smooth surface over the size of the skin: its facets bend less than elements
+/// do.
 constexpr double kSmoothFacets = 0.5;
 
 void note_patches(const Settings& settings, const NestedSurface& skin) {
@@ -49,7 +50,7 @@ Surface outer_surface(const Settings& settings) {
   if (!settings.surface.smooth) return facets;
   const std::string where = settings.surface.path.string();
   const SmoothSettings smoothing{settings.feature_angle, settings.patch_spacing,
-                                 kSmoothFacets * settings.element_size};
+                                 kSmoothFacets * settings.size_of_skin()};
   Surface surface = smooth(facets, smoothing, where);
   const Change change = change_between(surface, facets, std::numeric_limits<double>::infinity());
   note(settings.log, text("smooth surface: up to ", millimetres(change.distance),

@@ -137,6 +137,9 @@ struct Settings {
   bool all_nodes_are_sites = false;  ///< of a volume mesh, whatever the patch_spacing
   double patch_spacing = 0.010;      ///< m, edge length of the response surface
   double element_size = 0.005;       ///< m, edge length of the boundary facets
+  /// m, size that the skin is prepared for: its smooth facets and the outlines of supports. Meshes
+  /// that are compared share it, so that they have the same response vertices. 0: element_size.
+  double skin_size = 0;
   double interior_coarsening = 1.5;  ///< target of the largest interior edge over element_size
   double support_coarsening = 1;     ///< largest edge at supports over element_size
   double feature_angle = std::numbers::pi / 4;  ///< rad; sharper edges of the input stay sharp
@@ -147,6 +150,8 @@ struct Settings {
   double lateral_travel = 0;   ///< m, of the planned drags; 0 skips the check
   std::function<void(std::string_view)> log;  ///< receives one line for each step; may be empty
   OnRepair on_repair;  ///< called where the outer surface was repaired; may be empty
+
+  double size_of_skin() const { return skin_size > 0 ? skin_size : element_size; }
 
   /// The file that the body is made of.
   const std::filesystem::path& source() const {

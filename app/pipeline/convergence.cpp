@@ -70,7 +70,62 @@ void check_same_sites(const Body& first, const Body& finer, const std::string& w
   if (same) return;
   throw Error(ErrorKind::Geometry, where,
               "the finer mesh has other response vertices, so that their forces cannot be compared",
-              "set mesh.method = \"isotropic\", or change patch_spacing a little");
+              "set mesh.method = \"isotropic\" where it is not, or change patch_spacing a little");
+}
+
+/// The body with elements of each size. They are all made before any is pressed: a fault of the
+/// last is not to cost the campaigns before it.
+std::vector<Body> compared_bodies(mesher::Settings meshing, const std::vector<double>& sizes,
+                                  const std::string& where) {
+  meshing.skin_size = meshing.element_size;
+  std::vector<Body> bodies;
+  for (const double size : sizes) {
+    meshing.element_size = size;
+    bodies.push_back(mesher::mesh(meshing));
+    check_same_sites(bodies.front(), bodies.back(), where);
+    // Mean normals of smaller facets are others, and a force along another direction is no closer
+    // to the limit.
+    bodies.back().response.inward = bodies.front().response.inward;
+  }
+  return bodies;
+}
+
+/// The sites that all bodies have.
+std::vector<std::int32_t> common_sites(const std::vector<Body>& bodies) {
+  std::vector<std::int32_t> common = sites_of(bodies.front());
+  std::erase_if(common, [&](std::int32_t v) {
+    return std::any_of(bodies.begin(), bodies.end(), [v](const Body& body) {
+      return body.response.is_site[static_cast<std::size_t>(v)] == 0;
+    });
+  });
+  return common;
+}
+
+/// Those that were asked for, or three.
+std::vector<std::int32_t> chosen_sites(const std::vector<std::int32_t>& wanted,
+                                       const std::vector<Body>& bodies, const std::string& where) {
+  const std::vector<std::int32_t> common = common_sites(bodies);
+  if (common.empty()) {
+    throw Error(ErrorKind::Geometry, where, "no response vertex is a site on all of the meshes",
+                "press less deep, or by a smaller tool");
+  }
+  if (wanted.empty()) return three_of(common);
+  for (const std::int32_t v : wanted) {
+    if (std::find(common.begin(), common.end(), v) != common.end()) continue;
+    throw Error(ErrorKind::Configuration, fmt::format("--sites {}", v),
+                "the vertex is not a site on all of the meshes",
+                "choose others, or leave --sites out");
+  }
+  return wanted;
+}
+
+void refuse_meshes_from_files(const Workspace& space) {
+  if (space.c.mesh.volume_mesh.path.empty() && space.c.mesh.image.path.empty()) return;
+  refuse("case " + space.c.name,
+         "--convergence makes finer meshes of a surface, and this body is read as a mesh or an "
+         "image",
+         "for a mesh, compare cases of finer mesh files; for an image, those of a smaller "
+         "element_size");
 }
 
 ConvergenceOfForce convergence_of(const ConvergenceRow& row) {
@@ -104,13 +159,14 @@ std::string convergence_csv(const ConvergenceTable& table) {
 }
 
 ConvergenceTable run_convergence(const Workspace& space, int levels,
-                                 std::vector<std::int32_t> sites, const EventSink& emit) {
+                                 const std::vector<std::int32_t>& wanted, const EventSink& emit) {
   if (levels < 3) {
     throw Error(ErrorKind::Configuration, fmt::format("--convergence {}", levels),
                 "an order of convergence needs at least three meshes", "give 3 or more");
   }
+  refuse_meshes_from_files(space);
   prepare_output(space.out);
-  mesher::Settings meshing = mesh_settings(space);
+  const mesher::Settings meshing = mesh_settings(space);
   fem::CampaignSettings campaign = campaign_settings(space);
   fem::IndentationSettings& paths = campaign.indentation;
   if (paths.lateral_depths.size() > 1)
@@ -121,24 +177,14 @@ ConvergenceTable run_convergence(const Workspace& space, int levels,
 
   ConvergenceTable table;
   table.element_sizes = finer_element_sizes(meshing.patch_spacing, meshing.element_size, levels);
-  Body first;
-  for (const double size : table.element_sizes) {
-    meshing.element_size = size;
-    Body body = mesher::mesh(meshing);
-    if (table.nodes.empty()) {
-      first = body;
-      if (sites.empty()) sites = three_of(sites_of(body));
-    }
-    check_same_sites(first, body, space.c.name);
-    // Mean normals of smaller facets are others, and a force along another direction is no closer
-    // to the limit.
-    body.response.inward = first.response.inward;
-    table.nodes.push_back(static_cast<std::int64_t>(body.nodes.size()));
-    campaign.sites = sites;
+  const std::vector<Body> bodies = compared_bodies(meshing, table.element_sizes, space.c.name);
+  campaign.sites = chosen_sites(wanted, bodies, space.c.name);
+  for (std::size_t level = 0; level < bodies.size(); ++level) {
+    table.nodes.push_back(static_cast<std::int64_t>(bodies[level].nodes.size()));
     fem::CampaignReport report;
-    const Curves curves = fem::run_campaign(body, campaign, report);
+    const Curves curves = fem::run_campaign(bodies[level], campaign, report);
     for (const SiteCurves& site : curves.sites) add_forces(site, paths, table.rows);
-    emit(ConvergenceLevel{size, report.unknowns,
+    emit(ConvergenceLevel{table.element_sizes[level], report.unknowns,
                           report.cpu_seconds / static_cast<double>(curves.sites.size())});
   }
   for (ConvergenceRow& row : table.rows) {

@@ -31,12 +31,13 @@ struct ConvergenceTable {
 /// that a patch is divided into a whole number of facets.
 std::vector<double> finer_element_sizes(double patch_spacing, double element_size, int levels);
 
-/// Meshes the case on `levels` meshes, presses `sites` (empty: three sites, spread over all),
+/// Meshes the case on `levels` meshes, presses the sites `wanted` (empty: three, spread over all),
 /// reports the limits of the forces and writes them to `convergence.csv`. The artifacts are
 /// unchanged.
-/// @throws Error(Configuration) for fewer than three levels or a vertex that is not a site.
+/// @throws Error(Configuration) for fewer than three levels, a vertex that is not a site, or a body
+///   that is read as a mesh or an image.
 ConvergenceTable run_convergence(const Workspace& space, int levels,
-                                 std::vector<std::int32_t> sites, const EventSink& emit);
+                                 const std::vector<std::int32_t>& wanted, const EventSink& emit);
 
 std::string convergence_csv(const ConvergenceTable& table);
 

@@ -27,6 +27,11 @@ double order_of(double h1, double h2, double h3, double wanted) {
   return 0.5 * (low + high);
 }
 
+/// A difference over a value; 0 where there is none, as of forces of zero.
+double part_of(double difference, double value) {
+  return difference == 0 ? 0 : difference / std::abs(value);
+}
+
 }  // namespace
 
 Extrapolation extrapolate(const std::vector<double>& sizes, const std::vector<double>& values) {
@@ -46,8 +51,8 @@ Extrapolation extrapolate(const std::vector<double>& sizes, const std::vector<do
     e.value = known ? f3 : e.order;
     uncertainty = kSafetyWithoutOrder * (std::max({f1, f2, f3}) - std::min({f1, f2, f3}));
   }
-  e.error = (values.front() - e.value) / std::abs(e.value);
-  e.bound = known ? (std::abs(values.front() - f3) + uncertainty) / std::abs(e.value)
+  e.error = part_of(values.front() - e.value, e.value);
+  e.bound = known ? part_of(std::abs(values.front() - f3) + uncertainty, e.value)
                   : std::numeric_limits<double>::quiet_NaN();
   return e;
 }

@@ -27,4 +27,11 @@ EdgeFlags flag_sharp_edges(Mesh& mesh, double angle, double spacing, std::size_t
 /// @return the length of the others, m
 double flag_outline(Mesh& mesh, const std::vector<Edge>& outline, double spacing, EdgeFlags flags);
 
+using VertexFlags = Mesh::Property_map<Mesh::Vertex_index, bool>;
+
+/// Flags the corners of outlines, where their flagged edges turn by more than 45 degrees within
+/// half a spacing to both sides; no two of them are closer than that.
+VertexFlags flag_corners(Mesh& mesh, const std::vector<std::vector<Edge>>& outlines, double spacing,
+                         const EdgeFlags& flags);
+
 }  // namespace palpate::mesher

@@ -57,8 +57,9 @@ class Target {
   SegmentTree tree_;
 };
 
-void put_back(Mesh& mesh, EdgeFlags sharp, const Target& target) {
+void put_back(Mesh& mesh, EdgeFlags sharp, const VertexFlags& corners, const Target& target) {
   for (const auto v : mesh.vertices()) {
+    if (corners[v]) continue;  // it was never moved
     std::size_t features = 0;
     for (const auto h : mesh.halfedges_around_target(mesh.halfedge(v))) {
       if (sharp[mesh.edge(h)]) ++features;
@@ -225,13 +226,15 @@ NestedSurface remesh(const Surface& input, const RemeshSettings& settings, const
                    " of their outlines run beside an edge or are shorter than ", kShortestFeature,
                    " patches: facets there end near them"));
   }
+  const VertexFlags corners = flag_corners(mesh, settings.outlines, settings.spacing, sharp);
   const Target target(input, mesh, sharp);
   for (unsigned round = 0; round < kRemeshingRounds; ++round) {
     pmp::isotropic_remeshing(mesh.faces(), settings.spacing, mesh,
                              CGAL::parameters::edge_is_constrained_map(sharp)
+                                 .vertex_is_constrained_map(corners)
                                  .number_of_iterations(kIterationsPerRound)
                                  .relax_constraints(true));
-    put_back(mesh, sharp, target);
+    put_back(mesh, sharp, corners, target);
   }
   mesh.collect_garbage();
   Subdivision subdivision(mesh, sharp, target, settings.subdivisions);

@@ -19,11 +19,11 @@
 namespace palpate::mesher {
 namespace {
 
-/// Steps of an outline that is not straight in a triangle, over the element size.
+/// Steps of an outline that is not straight in a triangle, over the size of the skin.
 constexpr double kStep = 0.25;
 constexpr int kBisections = 50;
 /// Depth of a face inside a shape at which its points are taken for points of the outline, over the
-/// element size: a plane is usually placed a little inside of the flat face that is meant.
+/// size of the skin: a plane is usually placed a little inside of the flat face that is meant.
 constexpr double kShift = 0.05;
 
 /// At most 0 inside a shape, and changes by no more than the distance between two points.
@@ -73,14 +73,14 @@ Level level_of(const Zone& zone, const Log& log) {
 /// The level of a zone at the points of a surface.
 class Levels {
  public:
-  Levels(const Surface& surface, Level level, double element_size)
-      : surface_(surface), level_(std::move(level)), element_size_(element_size) {
+  Levels(const Surface& surface, Level level, double size)
+      : surface_(surface), level_(std::move(level)), size_(size) {
     evaluate();
   }
 
   /// Adds the points that are new.
   void evaluate() {
-    const double tolerance = kSupportTolerance * element_size_;
+    const double tolerance = kSupportTolerance * size_;
     for (std::size_t i = values_.size(); i < surface_.points.size(); ++i) {
       const double value = level_(surface_.points[i]);
       values_.push_back(std::abs(value) <= tolerance ? 0 : value);
@@ -88,13 +88,18 @@ class Levels {
     raise_floors(tolerance);
   }
 
-  /// Middles of the edges near the zero that are longer than `step`.
+  /// Middles of the edges near the zero that are longer than `step`. No outline crosses a face
+  /// whose corners are all on it.
   std::map<Edge, Vec3> long_edges(double step) const {
     std::map<Edge, Vec3> middles;
-    for (const Edge& e : edges_of(surface_.triangles)) {
-      const double length = norm(at(e[1]) - at(e[0]));
-      if (length > step && std::min(std::abs(value(e[0])), std::abs(value(e[1]))) <= length)
-        middles.emplace(e, 0.5 * (at(e[0]) + at(e[1])));
+    for (const Triangle& t : surface_.triangles) {
+      if (std::all_of(t.begin(), t.end(), [&](std::int32_t v) { return value(v) == 0; })) continue;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Edge e = edge_between(t[k], t[(k + 1) % 3]);
+        const double length = norm(at(e[1]) - at(e[0]));
+        if (length > step && std::min(std::abs(value(e[0])), std::abs(value(e[1]))) <= length)
+          middles.emplace(e, 0.5 * (at(e[0]) + at(e[1])));
+      }
     }
     return middles;
   }
@@ -124,7 +129,7 @@ class Levels {
       if (value(e[1]) < value(e[0]) - tolerance) is_floor[to_index(e[0])] = false;
     }
     for (std::size_t i = 0; i < values_.size(); ++i)
-      if (is_floor[i] && values_[i] < 0 && values_[i] >= -kShift * element_size_) values_[i] = 0;
+      if (is_floor[i] && values_[i] < 0 && values_[i] >= -kShift * size_) values_[i] = 0;
   }
 
   Vec3 crossing(const Edge& e) const {
@@ -139,7 +144,7 @@ class Levels {
 
   const Surface& surface_;
   Level level_;
-  double element_size_;
+  double size_;
   std::vector<double> values_;
 };
 
@@ -147,10 +152,10 @@ class Levels {
 void divide(Surface& surface, const Zone& zone, const Settings& settings) {
   const Level level = level_of(zone, {});
   if (!level) return;
-  Levels levels(surface, level, settings.element_size);
+  Levels levels(surface, level, settings.size_of_skin());
   if (!std::holds_alternative<PlaneSupport>(zone.shape)) {
-    for (auto middles = levels.long_edges(kStep * settings.element_size); !middles.empty();
-         middles = levels.long_edges(kStep * settings.element_size)) {
+    for (auto middles = levels.long_edges(kStep * settings.size_of_skin()); !middles.empty();
+         middles = levels.long_edges(kStep * settings.size_of_skin())) {
       split_edges(surface, middles);
       levels.evaluate();
     }
@@ -168,7 +173,7 @@ void mark_inside(const Surface& surface, const Zone& zone, const Settings& setti
       if (has_name[surface.names[t]] != zone.inverted) inside[t] = true;
     return;
   }
-  const Levels levels(surface, level_of(zone, {}), settings.element_size);
+  const Levels levels(surface, level_of(zone, {}), settings.size_of_skin());
   for (std::size_t t = 0; t < inside.size(); ++t)
     if (levels.contain(surface.triangles[t])) inside[t] = true;
 }

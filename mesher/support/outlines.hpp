@@ -22,8 +22,8 @@ struct OutlinedSurface {
 };
 
 /// Outlines of planes and names are exact. Those of other shapes are polylines with points on the
-/// outline, in steps of at most a quarter of the element size. A flat face that lies inside by up
-/// to a twentieth of the element size ends at its own edges.
+/// outline, in steps of at most a quarter of the size of the skin. A flat face that lies inside by
+/// up to a twentieth of that size ends at its own edges.
 /// @throws Error(Configuration) when no face has the name of a LabelSupport.
 OutlinedSurface with_outlines(const Surface& skin, const Settings& settings);
 

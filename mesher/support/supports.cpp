@@ -26,12 +26,16 @@ const std::vector<std::int32_t>& set_named(const std::string& label, const NodeS
          text("use one of ", list));
 }
 
+/// The outlines of round shapes have chords of up to a quarter of the size of the skin: where the
+/// outline is concave they lie outside, by as much of kSupportTolerance down to radii of that size.
+constexpr double kRoundTolerance = 10;
+
 /// Marks the boundary points inside a support.
 struct MarkInside {
   const Settings& settings;
   const Labels& labels;
   const Surface& boundary;
-  double tolerance = kSupportTolerance * settings.element_size;  ///< by which the shape is wider
+  double tolerance = kSupportTolerance * settings.size_of_skin();  ///< by which the shape is wider
   bool inverted = false;
 
   Marks marks_of(const Zone& zone) const {
@@ -41,13 +45,14 @@ struct MarkInside {
 
   template <typename Shape>
   Marks operator()(const Shape& shape) const {
-    return mark([&](const Vec3& x) { return contains(shape, x, tolerance) != inverted; });
+    constexpr double times = std::is_same_v<Shape, SphereSupport> ? kRoundTolerance : 1;
+    return mark([&](const Vec3& x) { return contains(shape, x, times * tolerance) != inverted; });
   }
 
   Marks operator()(const SurfaceSupport& near) const {
     const SurfaceQuery surface(read_surface(near.surface, settings.log));
-    return mark(
-        [&](const Vec3& x) { return is_near(surface, x, near.distance + tolerance) != inverted; });
+    const double reach = near.distance + kRoundTolerance * tolerance;
+    return mark([&](const Vec3& x) { return is_near(surface, x, reach) != inverted; });
   }
 
   /// A point within the tolerance of a named face has that face, or one that shares a corner with

@@ -23,8 +23,8 @@ bool all_marked(const Triangle& triangle, const Marks& marks);
 /// Marks also what `more` marks.
 void add_marks(Marks& marks, const Marks& more);
 
-/// Nodes on the border of a support are inside it whatever their rounding: this part of
-/// element_size.
+/// Nodes on the border of a support are inside it whatever their rounding: this part of the size of
+/// the skin.
 inline constexpr double kSupportTolerance = 1e-3;
 
 /// For each entry of Surface::known_names, whether it has the label.

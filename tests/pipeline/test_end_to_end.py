@@ -49,6 +49,46 @@ def paths_of(rows):
         yield key, group[0]["kind"], columns
 
 
+
+# A pad on a round support, whose outline crosses flat faces.
+ON_A_DISC = CASE[:CASE.index("[[support]]")].replace("interior_coarsening", 'method = "isotropic"\ninterior_coarsening') + """[[support]]
+shape = "sphere"
+centre = ["25 mm", "25 mm", "0 mm"]
+radius = "22 mm"
+
+""" + CASE[CASE.index("[[material]]"):CASE.index("lateral_depths")] + CASE[CASE.index("[fit]"):]
+
+
+class Convergence(unittest.TestCase):
+    def test_finer_elements_press_the_same_vertices_and_come_closer(self):
+        with tempfile.TemporaryDirectory() as folder:
+            case = write_case(Path(folder), ON_A_DISC)
+            out = Path(folder) / "out"
+            done = palpate("precompute", case, "--out", out, "--convergence", 3)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            rows = [row for row in rows_of(out / "convergence.csv") if row["quantity"].startswith("normal")]
+            self.assertEqual(len(rows), 3)
+            for row in rows:
+                forces = [float(value) for name, value in row.items() if name.startswith("force_N_at")]
+                self.assertEqual(len(forces), 3)
+                self.assertEqual(len(set(forces)), 3)  # no mesh stands for another
+                self.assertLess(abs(forces[2] / forces[1] - 1), 0.1)
+                self.assertLess(abs(float(row["error_of_the_case"])), float(row["bound_of_the_error"]) + 1e-9)
+            none = palpate("precompute", case, "--out", out, "--convergence", 3, "--sites", 0)
+            self.assertEqual(none.returncode, 2)
+            self.assertIn("not a site on all of the meshes", none.stderr)
+
+    def test_a_mesh_from_a_file_is_refused(self):
+        with tempfile.TemporaryDirectory() as folder:
+            text = CASE.replace("[surface]", "[volume_mesh]").replace("block.off", "block.msh")
+            text = text.replace('region = "gel"', "", 1)
+            case = Path(folder) / "block.toml"
+            case.write_text(text)
+            refused = palpate("precompute", case, "--out", Path(folder) / "out", "--convergence", 3)
+            self.assertEqual(refused.returncode, 2)
+            self.assertIn("read as a mesh", refused.stderr)
+
+
 class Pipeline(unittest.TestCase):
     @classmethod
     def setUpClass(cls):

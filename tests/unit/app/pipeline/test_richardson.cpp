@@ -71,5 +71,12 @@ TEST(Richardson, BoundsTheErrorOfNearlyAllSequences) {
   EXPECT_GT(covered, 0.95 * kSequences);
 }
 
+TEST(Richardson, ForceOfZeroHasNoError) {
+  const Extrapolation e = extrapolate({4e-3, 2.8e-3, 2e-3}, {0, 0, 0});
+  EXPECT_FALSE(e.trusted);
+  EXPECT_EQ(e.error, 0);
+  EXPECT_EQ(e.bound, 0);
+}
+
 }  // namespace
 }  // namespace palpate::app

@@ -94,9 +94,10 @@ TEST(ReadSurface, QuadsBecomeTrianglesOfTheSameVolume) {
 }
 
 TEST(ReadSurface, RefusesFilesThatAreMissingOrUnreadable) {
-  expect_refused(settings_for("nowhere/liver.stl"), "nowhere/liver.stl", "no such file", "path");
+  expect_refused(settings_for("nowhere/liver.stl"), "nowhere/liver.stl", "no such file", "path",
+                 ErrorKind::Configuration);
   expect_refused(settings_for(std::filesystem::temp_directory_path()), "", "not a readable file",
-                 "permissions");
+                 "permissions", ErrorKind::Configuration);
   expect_file_refused("a.3ds", "x", "unknown kind of surface file '.3ds'", "convert");
   expect_file_refused("empty.off", "", "the file is empty", "export");
   expect_file_refused("empty.obj", "# nothing\n", "no faces", "export");

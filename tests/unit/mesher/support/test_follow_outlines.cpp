@@ -87,5 +87,47 @@ TEST(FollowOutlines, TellsTheEdgesThatCrossAndFlattensNoTetrahedron) {
   EXPECT_LE(after.largest_dihedral, std::max(165.0, before.largest_dihedral));
 }
 
+// The outline of springs a little beside that of what is fixed takes no node away from it.
+TEST(FollowOutlines, OneOutlineDoesNotTakeTheNodesOfAnother) {
+  constexpr double kPart = kHeight / (2 * kRadius);
+  const test::TemporaryFile file("ball.off",
+                                 test::off_text(test::sphere({0, 0, 0}, 1000 * kRadius, 240)));
+  for (const double gap : {0.001, 0.003}) {
+    const Vec3 above = kBeyond.point + gap * Vec3{0, 0, 1};
+    Settings settings;
+    settings.surface = {file.path(), 0.001, "matrix"};
+    settings.supports = {kBeyond};
+    settings.foundation = {{PlaneSupport{above, {0, 0, -1}}, 1e6, 0}};
+    settings.method = MeshMethod::Delaunay;
+    settings.patch_spacing = 0.012;
+    settings.element_size = 0.008;
+    const Body body = mesh(settings);
+    test::expect_sound(body);
+    EXPECT_NEAR(part_beyond(body), kPart, 0.05 * kPart) << gap;
+  }
+}
+
+// A node of a sharp edge that climbed to an outline beside it would bend the flat face.
+TEST(FollowOutlines, AnOutlineBesideASharpEdgeBendsNoFlatFace) {
+  const test::TemporaryFile file("plate.off", test::off_text(test::box({0, 0, 0}, {60, 60, 20})));
+  const auto flat_base = [&](double height) {
+    Settings settings;
+    settings.surface = {file.path(), 0.001, "matrix"};
+    settings.supports = {PlaneSupport{{0, 0, height}, {0, 0, -1}}};
+    settings.method = MeshMethod::Delaunay;
+    settings.patch_spacing = settings.element_size = 0.008;
+    const Body body = mesh(settings);
+    double sum = 0;
+    for (const Triangle& t : body.boundary)
+      if (std::all_of(t.begin(), t.end(), [&](std::int32_t v) {
+            return std::abs(body.nodes[static_cast<std::size_t>(v)][2]) < 2e-4;
+          }))
+        sum += norm(area_vector(body.nodes, t)) / 2;
+    return sum;
+  };
+  const double without = flat_base(0.0001);
+  for (const double height : {0.0015, 0.003}) EXPECT_GT(flat_base(height), 0.9 * without) << height;
+}
+
 }  // namespace
 }  // namespace palpate::mesher

@@ -4,8 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "mesher/geometry/queries.hpp"
 #include "mesher/mesher.hpp"
@@ -118,6 +122,66 @@ TEST(Outlines, FixedAreaIsThatOfTheSupportForAnyElements) {
           << size;
     }
   }
+}
+
+/// A plate of 60 x 60 x 20 mm on a support, with elements of `size` in patches of 8 mm.
+Body plate_on(const Zone& support, double size, MeshMethod method, double skin_size = 0) {
+  static const test::TemporaryFile file("plate.off",
+                                        test::off_text(test::box({0, 0, 0}, {60, 60, 20})));
+  Settings settings;
+  settings.surface = {file.path(), 0.001, "matrix"};
+  settings.supports = {support};
+  settings.method = method;
+  settings.patch_spacing = 0.008;
+  settings.element_size = size;
+  settings.skin_size = skin_size;
+  settings.tool_radius = 0.002;
+  std::string log;
+  settings.log = [&](std::string_view line) { log += std::string(line) + "\n"; };
+  Body body = mesh(settings);
+  test::expect_sound(body);
+  EXPECT_EQ(log.find("does not make a sound mesh"), std::string::npos) << log;
+  return body;
+}
+
+TEST(Outlines, WithCornersKeepThem) {
+  constexpr std::array<std::array<double, 4>, 5> kBases{{{0.011, 0.007, 0.038, 0.052},
+                                                         {0.0205, 0.013, 0.047, 0.0335},
+                                                         {0.0161, 0.0193, 0.0387, 0.0471},
+                                                         {0.0172, 0.0118, 0.0513, 0.0362},
+                                                         {0.0241, 0.0227, 0.0444, 0.0431}}};
+  for (const auto& [x0, y0, x1, y1] : kBases) {
+    const double area = (x1 - x0) * (y1 - y0);
+    const BoxSupport base{{x0, y0, -0.005}, {x1, y1, 0.005}};
+    EXPECT_NEAR(fixed_area(plate_on(base, 0.004, MeshMethod::Isotropic)), area, 0.03 * area) << x0;
+  }
+}
+
+// Chords of a round outline lie outside of what is left when its inside is taken out.
+TEST(Outlines, AroundASmallHoleLosesNoFacet) {
+  for (const double radius : {0.012, 0.016}) {
+    const Zone around(SphereSupport{{0.03, 0.03, 0.02}, radius}, true);
+    const double hole = kPi * radius * radius;
+    for (const MeshMethod method : {MeshMethod::Isotropic, MeshMethod::Delaunay}) {
+      const Body body = plate_on(around, 0.004, method);
+      EXPECT_NEAR(test::boundary_area(body) - fixed_area(body), hole, 0.03 * hole) << radius;
+    }
+  }
+}
+
+// Forces on meshes with other vertices cannot be compared.
+TEST(Outlines, OfTheSameSkinGiveElementsOfAnySizeTheSameResponseVertices) {
+  const SphereSupport support{{0.03, 0.03, 0}, 0.018};
+  const auto positions = [&](double size) {
+    const Body body = plate_on(support, size, MeshMethod::Isotropic, 0.004);
+    std::vector<Vec3> all;
+    for (const std::int32_t node : body.response.node)
+      all.push_back(body.nodes[static_cast<std::size_t>(node)]);
+    return all;
+  };
+  const std::vector<Vec3> first = positions(0.004);
+  EXPECT_EQ(positions(0.008 / 3), first);
+  EXPECT_EQ(positions(0.002), first);
 }
 
 // A plane 1 mm above the base of a block: facets of 8 mm cannot follow both.
