@@ -49,6 +49,7 @@ void count_sites(const CaseOf& made, CountedCase& counted) {
 CountedCase counted_case(const CaseOf& made, int wanted) {
   CountedCase best;
   double asked = wanted, last_spacing = 0;
+  double fewer = 0, more = 0;  // what was asked for where that many were made
   for (int i = 0; i < kMostTrials; ++i) {
     CountedCase trial;
     trial.sizes = first_sizes(made.body.surface, made.base,
@@ -63,7 +64,10 @@ CountedCase counted_case(const CaseOf& made, int wanted) {
       trial.refusal = error.problem();
       return trial;
     }
-    asked *= wanted / static_cast<double>(std::max<std::int64_t>(1, *trial.sizes.sites));
+    const std::int64_t made_sites = std::max<std::int64_t>(1, *trial.sizes.sites);
+    (made_sites < wanted ? fewer : more) = asked;
+    asked = fewer > 0 && more > 0 ? std::sqrt(fewer * more)
+                                  : asked * wanted / static_cast<double>(made_sites);
     if (!best.body || distance(*trial.sizes.sites, wanted) < distance(*best.sizes.sites, wanted))
       best = std::move(trial);
     if (distance(*best.sizes.sites, wanted) <= kNearEnough) break;
