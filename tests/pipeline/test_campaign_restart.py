@@ -234,7 +234,7 @@ class Campaign(unittest.TestCase):
         _, free = self.peak(out, "--threads", "2")
         (out / "curves.h5").unlink()
         bound = int(0.9 * free)
-        code, used = self.peak(out, "--threads", "2", "--memory", str(bound))
+        code, used = self.peak(out, "--threads", "2", "--memory", f"{bound}B")
         self.assertEqual(code, self.code)
         self.assertLess(used, bound)
         self.assert_same_bits(out)

@@ -132,7 +132,7 @@ class Init(unittest.TestCase):
 
     def test_what_is_no_body_is_refused_and_nothing_is_written(self):
         empty = SOURCES / "tests/data/surfaces/trimesh/empty.stl"
-        for code, arguments in ((3, (empty,)), (3, (self.root / "none.stl",)), (3, (SOURCES / "README.md",)),
+        for code, arguments in ((3, (empty,)), (2, (self.root / "none.stl",)), (3, (SOURCES / "README.md",)),
                                 (2, (SOURCES / "data/bodies/pad.off", "--unit", "feet"))):
             done = palpate("init", *arguments, "-o", self.root / "case.toml")
             self.assertEqual(done.returncode, code, done.stderr)
