@@ -74,7 +74,7 @@ class Convergence(unittest.TestCase):
                 self.assertEqual(len(set(forces)), 3)  # no mesh stands for another
                 self.assertLess(abs(forces[2] / forces[1] - 1), 0.1)
                 self.assertLess(abs(float(row["error_of_the_case"])), float(row["bound_of_the_error"]) + 1e-9)
-            none = palpate("precompute", case, "--out", out, "--convergence", 3, "--sites", 0)
+            none = palpate("precompute", case, "--out", out, "--convergence", 3, "--sites", 100000)
             self.assertEqual(none.returncode, 2)
             self.assertIn("not a site on all of the meshes", none.stderr)
 
