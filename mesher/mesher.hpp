@@ -15,7 +15,8 @@ namespace palpate::mesher {
 /// nested: the facets of response triangle m are Body::boundary[m n^2 .. (m+1) n^2), and response
 /// vertex v is node v.
 ///
-/// Boundary nodes inside a support, or within element_size/1000 of it, are fixed.
+/// Boundary nodes inside a support, or within 1/1000 of Settings::size_of_skin(),
+/// 1/100 of it where the support is round, are fixed.
 /// Response vertices are no sites when they lie within tool_radius of a fixed node or of a facet on
 /// springs, or when no press direction can be interpolated around them because the surface is
 /// sharper than the patches resolve; the log counts the latter.

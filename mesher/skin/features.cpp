@@ -162,7 +162,7 @@ VertexFlags flag_corners(Mesh& mesh, const std::vector<std::vector<Edge>>& outli
   std::vector<Vec3> taken;
   for (const auto& [cosine, v] : turns) {
     const Vec3 x = to_vec3(mesh.point(v));
-    const bool has_room = std::none_of(taken.begin(), taken.end(), [&, x = x](const Vec3& other) {
+    const bool has_room = std::none_of(taken.begin(), taken.end(), [&](const Vec3& other) {
       return norm(x - other) < kCornerReach * spacing;
     });
     if (!has_room) continue;
