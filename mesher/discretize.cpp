@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <string>
 #include <utility>
 
@@ -29,7 +30,6 @@ namespace {
 struct Way {
   std::string name;
   std::function<Discretization()> run;
-  bool follows_supports = false;
 };
 
 int subdivisions_of(const Settings& settings) {
@@ -61,6 +61,44 @@ Discretization by_remeshing(const Settings& settings, const Surface& skin,
   return result;
 }
 
+/// Moves nodes of the boundary onto the outlines of supports as far as there is room.
+void follow(const Settings& settings, const OutlinedSurface& outlined,
+            const std::vector<Triangle>& boundary, VolumeMesh& volume) {
+  const std::size_t crossing = follow_outlines(outlined, boundary, volume.tetrahedra, volume.nodes);
+  if (crossing > 0)
+    note(settings.log, text("supports: ", counted(crossing, "edge"),
+                            " of the body still cross their outlines: facets there end near them"));
+}
+
+/// Puts the points of the skin where the nodes of the volume have moved, and the middles of the
+/// curved edges there on the surface again.
+void follow_nodes(const std::vector<Vec3>& nodes, const Surface& input, NestedSurface& skin) {
+  std::vector<bool> moved(skin.boundary.points.size());
+  for (std::size_t i = 0; i < moved.size(); ++i) {
+    moved[i] = norm(nodes[i] - skin.boundary.points[i]) > 0;
+    skin.boundary.points[i] = nodes[i];
+    if (i < skin.response.points.size()) skin.response.points[i] = nodes[i];
+  }
+  const auto has_moved = [&](const CurvedEdge& edge) {
+    return moved[to_index(edge.ends[0])] || moved[to_index(edge.ends[1])];
+  };
+  if (skin.curved.empty()) return;
+  std::erase_if(skin.curved, has_moved);
+  const std::vector<CurvedEdge> all = curve_edges(skin.boundary, input);
+  std::copy_if(all.begin(), all.end(), std::back_inserter(skin.curved), has_moved);
+}
+
+/// Remeshes without regard to supports, where edges along their outlines would have no room.
+Discretization by_remeshing_and_moving(const Settings& settings, const Surface& skin,
+                                       const OutlinedSurface& outlined,
+                                       const std::vector<Surface>& inclusions) {
+  Discretization result = by_remeshing(settings, skin, {}, inclusions);
+  follow(settings, outlined, result.skin.boundary.triangles, result.volume);
+  follow_nodes(result.volume.nodes, skin, result.skin);
+  check_nesting(result.skin, settings.patch_spacing, settings.surface.path.string());
+  return result;
+}
+
 Discretization by_refinement(const Settings& settings, const Surface& skin,
                              const OutlinedSurface& outlined,
                              const std::vector<Surface>& inclusions) {
@@ -74,11 +112,7 @@ Discretization by_refinement(const Settings& settings, const Surface& skin,
   delaunay.log = settings.log;
   DelaunayReport report;
   VolumeMesh volume = mesh_domain(domain_of(settings, skin, inclusions), delaunay, where, report);
-  const std::size_t crossing =
-      follow_outlines(outlined, boundary_of(volume, where), volume.tetrahedra, volume.nodes);
-  if (crossing > 0)
-    note(settings.log, text("supports: ", counted(crossing, "edge"),
-                            " of the body still cross their outlines: facets there end near them"));
+  follow(settings, outlined, boundary_of(volume, where), volume);
   const double spacing = subdivisions_of(settings) > 1 ? settings.patch_spacing : 0;
   Discretization result = with_response(std::move(volume), spacing, settings.feature_angle, where);
   if (settings.curved_facets) result.skin.curved = curve_edges(result.skin.boundary, skin);
@@ -126,13 +160,17 @@ std::vector<Way> ways(const Settings& settings, const Surface& skin,
                   [](const SupportedPart& part) { return !part.outline.empty(); });
   std::vector<Way> result;
   if (settings.method != MeshMethod::Delaunay && !needs_refinement(settings)) {
-    if (has_outline)
+    if (has_outline) {
       result.push_back(
           {"isotropic remeshing along the outlines of supports",
-           [&] { return by_remeshing(settings, outlined.surface, outlined.parts, inclusions); },
-           true});
-    result.push_back(
-        {"isotropic remeshing", [&] { return by_remeshing(settings, skin, {}, inclusions); }});
+           [&] { return by_remeshing(settings, outlined.surface, outlined.parts, inclusions); }});
+      result.push_back({"isotropic remeshing", [&] {
+                          return by_remeshing_and_moving(settings, skin, outlined, inclusions);
+                        }});
+    } else {
+      result.push_back(
+          {"isotropic remeshing", [&] { return by_remeshing(settings, skin, {}, inclusions); }});
+    }
   }
   if (settings.method != MeshMethod::Isotropic)
     result.push_back({"Delaunay refinement",
@@ -160,11 +198,7 @@ Discretization discretize(const Settings& settings, const Surface& skin,
       return result;
     } catch (const Error& error) {
       if (error.kind() == ErrorKind::Configuration) throw;
-      const std::string failure = text(way.name, " does not make a sound mesh: ", error.problem());
-      if (way.follows_supports)
-        warn(settings.log, failure + "; supports end up to an element short of their outlines");
-      else
-        note(settings.log, failure);
+      note(settings.log, text(way.name, " does not make a sound mesh: ", error.problem()));
       problems += text(problems.empty() ? "" : "; ", way.name, ": ", error.problem());
       remedy = error.remedy();
     }

@@ -183,6 +183,8 @@ class Subdivision {
   NestedSurface result_;
 };
 
+}  // namespace
+
 void check_nesting(const NestedSurface& nested, double spacing, const std::string& where) {
   const std::string remedy =
       text("the detail of the surface is finer than a patch of ", millimetres(spacing),
@@ -206,8 +208,6 @@ void check_nesting(const NestedSurface& nested, double spacing, const std::strin
     }
   }
 }
-
-}  // namespace
 
 NestedSurface remesh(const Surface& input, const RemeshSettings& settings, const std::string& where,
                      const Log& log) {

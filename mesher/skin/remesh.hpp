@@ -36,4 +36,8 @@ struct RemeshSettings {
 NestedSurface remesh(const Surface& input, const RemeshSettings& settings, const std::string& where,
                      const Log& log);
 
+/// @throws Error(Geometry) with `where` when a boundary facet faces another way than its patch, or
+///   when one of the surfaces intersects itself.
+void check_nesting(const NestedSurface& nested, double spacing, const std::string& where);
+
 }  // namespace palpate::mesher

@@ -10,7 +10,8 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 fail() { printf 'packages: %s\n' "$*"; exit 1; }
 
-(cd "$build" && "$cpack" -G DEB -B "$work/packages" > "$work/log" 2>&1) || { cat "$work/log"; exit 1; }
+# Packages by xz are smaller, and take as long to compress as all that follows.
+(cd "$build" && "$cpack" -G DEB -D CPACK_DEBIAN_COMPRESSION_TYPE=gzip -B "$work/packages" > "$work/log" 2>&1) || { cat "$work/log"; exit 1; }
 rm -rf "$work/packages/_CPack_Packages"
 declare -A file
 for deb in "$work"/packages/*.deb; do file[$(dpkg-deb --field "$deb" Package)]=$deb; done

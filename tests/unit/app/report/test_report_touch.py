@@ -412,7 +412,7 @@ class Pictures(Acted):
               let arrow = 0; for (let i = 0; i < data.length; i += 4) arrow += data[i] === 213 && data[i + 1] === 94 && data[i + 2] === 0;
               return {text: get('scrub-text').textContent, arrow}; };
             said.contact = at(0.75); said.free = at(2.2);
-            said.all = []; for (let t = 0; t < 3; t += 0.004) { const s = get('scrub'); s.value = t; s.dispatchEvent(new Event('input')); said.all.push(get('scrub-text').textContent); } at(2.2);
+            said.all = []; for (let t = 0; t < 3; t += 0.02) { const s = get('scrub'); s.value = t; s.dispatchEvent(new Event('input')); said.all.push(get('scrub-text').textContent); } at(2.2);
             get('scrub-play').click(); await frames(30); get('scrub-play').click(); said.played = Number(get('scrub').value);
             said.label = get('scrub-play').textContent;""", only="session")
         drawn = self.data["session"]["drawn"]

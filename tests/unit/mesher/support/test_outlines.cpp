@@ -9,6 +9,7 @@
 #include <numbers>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "mesher/geometry/queries.hpp"
@@ -125,7 +126,8 @@ TEST(Outlines, FixedAreaIsThatOfTheSupportForAnyElements) {
 }
 
 /// A plate of 60 x 60 x 20 mm on a support, with elements of `size` in patches of 8 mm.
-Body plate_on(const Zone& support, double size, MeshMethod method, double skin_size = 0) {
+Body plate_on(const Zone& support, double size, MeshMethod method, std::string& log,
+              double skin_size = 0) {
   static const test::TemporaryFile file("plate.off",
                                         test::off_text(test::box({0, 0, 0}, {60, 60, 20})));
   Settings settings;
@@ -136,10 +138,16 @@ Body plate_on(const Zone& support, double size, MeshMethod method, double skin_s
   settings.element_size = size;
   settings.skin_size = skin_size;
   settings.tool_radius = 0.002;
-  std::string log;
   settings.log = [&](std::string_view line) { log += std::string(line) + "\n"; };
   Body body = mesh(settings);
   test::expect_sound(body);
+  return body;
+}
+
+/// The same by the first way of making a mesh that the method allows.
+Body plate_on(const Zone& support, double size, MeshMethod method, double skin_size = 0) {
+  std::string log;
+  Body body = plate_on(support, size, method, log, skin_size);
   EXPECT_EQ(log.find("does not make a sound mesh"), std::string::npos) << log;
   return body;
 }
@@ -166,6 +174,21 @@ TEST(Outlines, AroundASmallHoleLosesNoFacet) {
       const Body body = plate_on(around, 0.004, method);
       EXPECT_NEAR(test::boundary_area(body) - fixed_area(body), hole, 0.03 * hole) << radius;
     }
+  }
+}
+
+// Edges of a patch have no room along a circle of such a radius: nodes are moved onto it. Its
+// chords enclose a little less than it does.
+TEST(Outlines, OfASupportAsLargeAsAPatchAreFollowedByNodes) {
+  for (const auto& [radius, size] : {std::pair{0.008, 0.004}, std::pair{0.0088, 0.008 / 3}}) {
+    const double chord = size / radius;
+    const double area = kPi * radius * radius * (1 - chord * chord / 6);
+    std::string log;
+    const Body body =
+        plate_on(SphereSupport{{0.03, 0.03, 0.02}, radius}, size, MeshMethod::Isotropic, log);
+    EXPECT_NE(log.find("along the outlines of supports does not make a sound mesh"),
+              std::string::npos);
+    EXPECT_NEAR(fixed_area(body), area, 0.03 * area) << radius << '\n' << log;
   }
 }
 
