@@ -86,6 +86,8 @@ void follow_nodes(const std::vector<Vec3>& nodes, const Surface& input, NestedSu
   std::erase_if(skin.curved, has_moved);
   const std::vector<CurvedEdge> all = curve_edges(skin.boundary, input);
   std::copy_if(all.begin(), all.end(), std::back_inserter(skin.curved), has_moved);
+  std::sort(skin.curved.begin(), skin.curved.end(),
+            [](const CurvedEdge& a, const CurvedEdge& b) { return a.ends < b.ends; });
 }
 
 /// Remeshes without regard to supports, where edges along their outlines would have no room.

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "format/edge.hpp"
 #include "mesher/geometry/queries.hpp"
 #include "mesher/mesher.hpp"
 #include "mesher/skin/remesh.hpp"
@@ -190,6 +191,33 @@ TEST(Outlines, OfASupportAsLargeAsAPatchAreFollowedByNodes) {
               std::string::npos);
     EXPECT_NEAR(fixed_area(body), area, 0.03 * area) << radius << '\n' << log;
   }
+}
+
+// The middles of edges whose nodes have moved lie on the surface, like those of all others.
+TEST(Outlines, ThatNodesFollowKeepTheFacetsCurved) {
+  constexpr double kRadius = 0.05, kSpot = 0.0126, kSpacing = 0.012;
+  const test::TemporaryFile file("ball.off",
+                                 test::off_text(test::sphere({0, 0, 0}, 1000 * kRadius, 240)));
+  Settings settings;
+  settings.surface = {file.path(), 0.001, "matrix"};
+  settings.supports = {SphereSupport{{0, 0, kRadius}, kSpot}};
+  settings.method = MeshMethod::Isotropic;
+  settings.patch_spacing = kSpacing;
+  settings.element_size = kSpacing / 4;
+  settings.tool_radius = 0.002;
+  settings.curved_facets = true;
+  std::string log;
+  settings.log = [&](std::string_view line) { log += std::string(line) + "\n"; };
+  const Body body = mesh(settings);
+  ASSERT_NE(log.find("along the outlines of supports does not make a sound mesh"),
+            std::string::npos)
+      << log;
+  test::expect_sound(body);
+  EXPECT_TRUE(
+      std::is_sorted(body.curved_edges.begin(), body.curved_edges.end(),
+                     [](const CurvedEdge& a, const CurvedEdge& b) { return a.ends < b.ends; }));
+  EXPECT_EQ(body.curved_edges.size(), edges_of(body.boundary).size());
+  for (const CurvedEdge& edge : body.curved_edges) EXPECT_NEAR(norm(edge.middle), kRadius, 2e-5);
 }
 
 // Forces on meshes with other vertices cannot be compared.
