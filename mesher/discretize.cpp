@@ -63,8 +63,9 @@ Discretization by_remeshing(const Settings& settings, const Surface& skin,
 
 /// Moves nodes of the boundary onto the outlines of supports as far as there is room.
 void follow(const Settings& settings, const OutlinedSurface& outlined,
-            const std::vector<Triangle>& boundary, VolumeMesh& volume) {
-  const std::size_t crossing = follow_outlines(outlined, boundary, volume.tetrahedra, volume.nodes);
+            const std::vector<Triangle>& boundary, VolumeMesh& volume, std::size_t kept = 0) {
+  const std::size_t crossing =
+      follow_outlines(outlined, boundary, volume.tetrahedra, volume.nodes, kept);
   if (crossing > 0)
     note(settings.log, text("supports: ", counted(crossing, "edge"),
                             " of the body still cross their outlines: facets there end near them"));
@@ -77,7 +78,6 @@ void follow_nodes(const std::vector<Vec3>& nodes, const Surface& input, NestedSu
   for (std::size_t i = 0; i < moved.size(); ++i) {
     moved[i] = norm(nodes[i] - skin.boundary.points[i]) > 0;
     skin.boundary.points[i] = nodes[i];
-    if (i < skin.response.points.size()) skin.response.points[i] = nodes[i];
   }
   const auto has_moved = [&](const CurvedEdge& edge) {
     return moved[to_index(edge.ends[0])] || moved[to_index(edge.ends[1])];
@@ -90,12 +90,14 @@ void follow_nodes(const std::vector<Vec3>& nodes, const Surface& input, NestedSu
             [](const CurvedEdge& a, const CurvedEdge& b) { return a.ends < b.ends; });
 }
 
-/// Remeshes without regard to supports, where edges along their outlines would have no room.
+/// Remeshes without regard to supports, where edges along their outlines would have no room. The
+/// response vertices stay, so that they do not depend on the elements.
 Discretization by_remeshing_and_moving(const Settings& settings, const Surface& skin,
                                        const OutlinedSurface& outlined,
                                        const std::vector<Surface>& inclusions) {
   Discretization result = by_remeshing(settings, skin, {}, inclusions);
-  follow(settings, outlined, result.skin.boundary.triangles, result.volume);
+  follow(settings, outlined, result.skin.boundary.triangles, result.volume,
+         result.skin.response.points.size());
   follow_nodes(result.volume.nodes, skin, result.skin);
   check_nesting(result.skin, settings.patch_spacing, settings.surface.path.string());
   return result;

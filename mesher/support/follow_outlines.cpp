@@ -32,14 +32,16 @@ constexpr double kBendFactor = 2.5, kMostBend = 0.01;
 class Movable {
  public:
   Movable(const SurfaceQuery& surface, const std::vector<Triangle>& boundary,
-          const std::vector<Tetrahedron>& tetrahedra, std::vector<Vec3>& nodes)
+          const std::vector<Tetrahedron>& tetrahedra, std::vector<Vec3>& nodes, std::size_t kept)
       : surface_(surface),
         boundary_(boundary),
         tetrahedra_(tetrahedra),
         nodes_(nodes),
         facets_(incident_triangles(nodes.size(), boundary)),
         around_(nodes.size()),
-        pinned_(nodes.size(), false) {
+        pinned_(nodes.size(), false),
+        kept_(kept) {
+    std::fill_n(pinned_.begin(), kept, true);
     for (std::size_t t = 0; t < tetrahedra.size(); ++t)
       for (const std::int32_t v : tetrahedra[t]) around_[to_index(v)].push_back(t);
   }
@@ -53,6 +55,7 @@ class Movable {
   /// @return false when the tetrahedra around the node would be too flat, or the facets too far
   /// from the surface; it has not moved then.
   bool move(std::int32_t v, const Vec3& x) {
+    if (to_index(v) < kept_) return true;  // it is there but for rounding
     const Quality before = quality_around(v);
     const std::vector<double> distances = distances_of_facets(v);
     const Vec3 from = std::exchange(nodes_[to_index(v)], x);
@@ -113,6 +116,7 @@ class Movable {
   std::vector<std::vector<std::int32_t>> facets_;
   std::vector<std::vector<std::size_t>> around_;
   std::vector<bool> pinned_;
+  std::size_t kept_;
 };
 
 /// The outline of a part, and on which side of it nodes lie.
@@ -235,10 +239,11 @@ class Follower {
 }  // namespace
 
 std::size_t follow_outlines(const OutlinedSurface& outlined, const std::vector<Triangle>& boundary,
-                            const std::vector<Tetrahedron>& tetrahedra, std::vector<Vec3>& nodes) {
+                            const std::vector<Tetrahedron>& tetrahedra, std::vector<Vec3>& nodes,
+                            std::size_t kept) {
   const SurfaceQuery query(outlined.surface);
   const std::vector<Edge> edges = edges_of(boundary);
-  Movable mesh(query, boundary, tetrahedra, nodes);
+  Movable mesh(query, boundary, tetrahedra, nodes, kept);
   std::vector<Follower> followers;
   for (const SupportedPart& part : outlined.parts) {
     if (part.outline.empty()) continue;

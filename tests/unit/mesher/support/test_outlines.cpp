@@ -178,8 +178,9 @@ TEST(Outlines, AroundASmallHoleLosesNoFacet) {
   }
 }
 
-// Edges of a patch have no room along a circle of such a radius: nodes are moved onto it. Its
-// chords enclose a little less than it does.
+// Edges of a patch have no room along a circle of such a radius: nodes are moved onto it, but for
+// response vertices. Without, the support would end half a facet short and lose size / radius of
+// its area. Its chords enclose a little less than it does.
 TEST(Outlines, OfASupportAsLargeAsAPatchAreFollowedByNodes) {
   for (const auto& [radius, size] : {std::pair{0.008, 0.004}, std::pair{0.0088, 0.008 / 3}}) {
     const double chord = size / radius;
@@ -189,7 +190,7 @@ TEST(Outlines, OfASupportAsLargeAsAPatchAreFollowedByNodes) {
         plate_on(SphereSupport{{0.03, 0.03, 0.02}, radius}, size, MeshMethod::Isotropic, log);
     EXPECT_NE(log.find("along the outlines of supports does not make a sound mesh"),
               std::string::npos);
-    EXPECT_NEAR(fixed_area(body), area, 0.03 * area) << radius << '\n' << log;
+    EXPECT_NEAR(fixed_area(body), area, chord / 3 * area) << radius << '\n' << log;
   }
 }
 
