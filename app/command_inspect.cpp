@@ -17,10 +17,10 @@ void add_inspect_command(CLI::App& root, Action& action) {
   command->footer("Example: palpate inspect out/cylinder/library.h5 --json");
   const auto options = std::make_shared<Options>();
   command
-      ->add_option(
-          "FILE", options->file,
-          "body.h5, curves.h5, library.h5, deformation.pdef, recording.h5, curves.journal or "
-          "recording.journal")
+      ->add_option("FILE", options->file,
+                   "body.h5, curves.h5, library.h5, library.plib, deformation.pdef, recording.h5, "
+                   "the journal of "
+                   "a campaign, of hold-out points or of a session, or the fields of a site")
       ->required();
   command->add_flag("--json", options->json,
                     "Print JSON, including the resolved case of each stage");

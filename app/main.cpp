@@ -91,10 +91,11 @@ int parse_and_run(int count, char** arguments) {
                 "palpate"};
   root.footer(
       "Exit codes: 0 success, 1 internal error, 2 usage, configuration, files\n"
-      "or device, 3 unusable geometry, 4 finished, but incomplete: too many\n"
-      "sites ended early (with --strict: any), hold-out points failed, records\n"
-      "were refused, a constant was not identified, a journal was damaged, or\n"
-      "with --strict a session went beyond the computed depth.\n"
+      "or device, 3 unusable geometry, 4 finished, but incomplete: more than a\n"
+      "twentieth of the sites have no response, any ended early with --strict,\n"
+      "hold-out points failed, records were refused, a constant was not\n"
+      "identified, a journal was damaged, or with --strict a session went\n"
+      "beyond the computed depth.\n"
       "'palpate help SUBCOMMAND' explains a subcommand; --quiet and --verbose\n"
       "stand before or after it.\n"
       "Example: palpate build data/cases/liver.toml");

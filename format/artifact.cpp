@@ -58,6 +58,11 @@ std::string artifact_kind(const std::filesystem::path& file, const std::string& 
   return hdf5::Reader(file, remedy).text("/", "artifact");
 }
 
+std::int64_t schema_of_file(const std::filesystem::path& file, const std::string& remedy) {
+  if (is_flat_file(file)) return version_of_flat_file(file);
+  return hdf5::Reader(file, remedy).integer("/", "schema");
+}
+
 void write_root(hdf5::Writer& writer, const std::string& artifact, int schema,
                 const std::string& description) {
   writer.set_text("/", "artifact", artifact);

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstddef>
+#include <cstring>
 #include <fstream>
 #include <utility>
 
@@ -69,6 +71,14 @@ bool is_flat_file(const std::filesystem::path& file) {
   if (!std::filesystem::is_regular_file(file)) return false;
   std::ifstream(file, std::ios::binary).read(first.data(), first.size());
   return begins_flat({first.data(), first.size()});
+}
+
+std::uint32_t version_of_flat_file(const std::filesystem::path& file) {
+  std::array<char, offsetof(Head, version) + sizeof(Head::version)> first{};
+  std::ifstream(file, std::ios::binary).read(first.data(), first.size());
+  std::uint32_t version = 0;
+  std::memcpy(&version, first.data() + offsetof(Head, version), sizeof version);
+  return version;
 }
 
 void FlatWriter::add(std::string_view name, FlatType type, std::uint32_t columns,

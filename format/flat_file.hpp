@@ -81,6 +81,9 @@ bool begins_flat(std::string_view bytes) noexcept;
 /// The same of a file; false where it cannot be read.
 bool is_flat_file(const std::filesystem::path& file);
 
+/// Its version; 0 where it ends before that.
+std::uint32_t version_of_flat_file(const std::filesystem::path& file);
+
 /// Collects the entries of a file.
 class FlatWriter {
  public:

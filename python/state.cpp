@@ -258,7 +258,7 @@ void define_run(py::module_& module) {
                              "(N, 3): n, unit, into the body, in the world.")
       .def_property_readonly("depth", of_run(&RunStep::depth), "(N,) m: z = n . (x - c) - d0.")
       .def_property_readonly("lateral", of_run(&RunStep::lateral),
-                             "(N,) m: lateral deflection rho.")
+                             "(N,) m: lateral distance of the tip from the anchor.")
       .def_property_readonly("offset", of_run(&RunStep::offset), "(N,) m: depth offset d0.")
       .def_property_readonly("energy", of_run(&RunStep::energy), "(N,) J: stored in the body.")
       .def_property_readonly("tank", of_run(&RunStep::tank), "(N,) J: energy tank.")
@@ -292,7 +292,7 @@ void define_observation(py::module_& module) {
       .def_property_readonly("normal", row_of_observation(&Seen::normal),
                              "(3,): n, unit, into the body.")
       .def_readonly("depth", &Seen::depth, "m: z = n . (x - c) - d0.")
-      .def_readonly("lateral", &Seen::lateral, "m: lateral deflection rho.")
+      .def_readonly("lateral", &Seen::lateral, "m: lateral distance of the tip from the anchor.")
       .def_readonly("offset", &Seen::offset, "m: depth offset d0.")
       .def_readonly("energy", &Seen::energy, "J: stored in the body.")
       .def_readonly("tank", &Seen::tank, "J: energy tank.")

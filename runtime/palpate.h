@@ -145,20 +145,22 @@ typedef struct palpate_settings {
 
 /* The state after the last step, for recording and display. */
 typedef struct palpate_observation {
-  uint32_t size;           /* sizeof(palpate_observation), set by the caller */
-  uint32_t status;         /* status bits of the last step */
-  int32_t element;         /* active element (row of the triangles), -1 without contact */
-  double contact_point[3]; /* c, m */
-  double natural[3];       /* natural coordinates of c in the active element; they sum to 1 */
-  double normal[3];        /* n, unit, into the body */
-  double depth;            /* z = n . (x - c) - d0, m */
-  double lateral;          /* rho = |x - c - (z + d0) n - s|, m */
-  double offset;           /* d0, depth offset, m */
-  double energy;           /* E_i(x), stored in the local model and the memory of the tissue, J */
-  double tank;             /* energy tank, J */
-  double absorbed;         /* net work of the tool on the body since the state was created or reset,
-                              J: the sum over steps of E_{i-1}(x_i) - E_{i-1}(x_{i-1}) */
-  double force_on_body[3]; /* f, N; palpate_step gives -f */
+  uint32_t size;            /* sizeof(palpate_observation), set by the caller */
+  uint32_t status;          /* status bits of the last step */
+  int32_t element;          /* active element (row of the triangles), -1 without contact */
+  double contact_point[3];  /* c, m */
+  double natural[3];        /* natural coordinates of c in the active element; they sum to 1 */
+  double normal[3];         /* n, unit, into the body */
+  double depth;             /* z = n . (x - c) - d0, m */
+  double lateral;           /* |x - c - (z + d0) n - s|, m: distance from the anchor; rho of the
+                               lateral response without lean, micro-slip and soft axes */
+  double offset;            /* d0, depth offset, m */
+  double energy;            /* E_i(x), stored in the local model and the memory of the tissue, J */
+  double tank;              /* energy tank, J */
+  double absorbed;          /* net work of the tool on a body at rest since the state was created or
+                               reset, J: the sum over steps of E_{i-1}(x_i) - E_{i-1}(x_{i-1}), x
+                               in the body */
+  double force_on_body[3];  /* f, N; palpate_step gives -f */
   double lateral_offset[3]; /* s, lateral offset, m: slip that the contact point has not followed,
                                at borders, at edges that await delivery, in rate-limited slides */
   double dissipated; /* energy that relaxation has dissipated since the state was created or reset,
@@ -240,7 +242,7 @@ PALPATE_API void palpate_state_reset(palpate_state* state);
 /* Sets the pose of the body: x_world = rotation x_body + position. rotation: three rows,
  * orthonormal and right-handed. Positions, forces and observations are in the world; until the
  * first call world and body coincide. May be called between steps, also in contact: the body then
- * moves against the tool, and `absorbed` includes the work of that motion. The force changes by at
+ * moves against the tool, and `absorbed` counts that relative motion. The force changes by at
  * most lipschitz_bound times the travel of the tip in the body plus the angle of the turn (rad)
  * times the distance from the tip to the contact point: move the body in small steps. Real-time
  * safe. */

@@ -13,10 +13,12 @@
 #include "format/body.hpp"
 #include "format/curves.hpp"
 #include "format/deformation.hpp"
+#include "format/flat_file.hpp"
 #include "format/guarantee.hpp"
 #include "format/library.hpp"
 #include "format/recording.hpp"
 #include "format/session_journal.hpp"
+#include "format/site_fields.hpp"
 #include "format/site_journal.hpp"
 #include "format/site_record.hpp"
 #include "runtime/palpate.h"
@@ -411,10 +413,21 @@ Json summary_of(const SessionSummary& session) {
           {"gaps", gaps}};
 }
 
+Json lengths(const std::vector<double>& values) {
+  return {{"values", values}, {"unit", "m"}};
+}
+
+Json summary_of(const SiteFields& fields) {
+  std::vector<double> depths, lateral_depths;
+  for (const NormalField& field : fields.normal) depths.push_back(field.depth);
+  for (const LateralField& field : fields.lateral) lateral_depths.push_back(field.depth);
+  return {{"response_vertex", fields.vertex},
+          {"skin_vertices", fields.normal.empty() ? 0 : fields.normal.front().skin.size() / 3},
+          {"depths", lengths(depths)},
+          {"depths_of_drags", lengths(lateral_depths)}};
+}
+
 Json summary_of(const Deformation& skin) {
-  const auto lengths = [](const std::vector<double>& of) {
-    return Json{{"values", of}, {"unit", "m"}};
-  };
   return {{"tool", skin.tool_shape},
           {"tool_radius", with_unit(skin.tool_radius, "m")},
           {"skin_vertices", skin.positions.size()},
@@ -526,19 +539,21 @@ Json summarize_artifact(const std::filesystem::path& file) {
     summary.update(summary_of(read_deformation(file)));
     return summary;
   }
-  const std::string kind = artifact_kind(file, "give an artifact of palpate");
-  const auto head = [&](int schema) {
-    return Json{{"file", file.string()}, {"artifact", kind}, {"schema", schema}};
-  };
-  if (kind == "palpate.body") return complete(head(kBodySchema), read_body(file));
-  if (kind == "palpate.curves") return complete(head(kCurvesSchema), read_curves(file));
-  if (kind == "palpate.library") {
-    const Library library = read_library(file);
-    return complete(head(schema_of(library)), library);
+  if (file.extension() == ".fields") {
+    Json summary{{"file", file.string()}, {"artifact", "palpate.fields"}};
+    summary.update(summary_of(read_site_fields(file)));
+    return summary;
   }
+  const std::string remedy = "give an artifact of palpate", kind = artifact_kind(file, remedy);
+  const Json head{{"file", file.string()},
+                  {"artifact", kind},
+                  {is_flat_file(file) ? "version" : "schema", schema_of_file(file, remedy)}};
+  if (kind == "palpate.body") return complete(head, read_body(file));
+  if (kind == "palpate.curves") return complete(head, read_curves(file));
+  if (kind == "palpate.library") return complete(head, read_library(file));
   if (kind == "palpate.recording") {
     RecordingReader reader(file);
-    Json summary = head(kRecordingSchema);
+    Json summary = head;
     summary.update(summary_of(reader));
     summary["provenance"] = provenance_of(reader.heading().provenance);
     return summary;

@@ -33,11 +33,11 @@ struct IncrementStart {
 ///   tie:     force -k s on a node, s = x - x_tool less its value when the tie was made
 /// with the energy sum w p^2/(2 eps) + sum k s^2/2. Of the area A around a node (the integral of
 /// the positive part of its shape function) a fraction phi is in contact when the tie is made:
-///   k = c E sqrt(A) phi/(1 - phi).
-/// Where phi = 1 the tie is almost rigid. Elsewhere it is about as stiff as the elements behind it,
-/// the scale of Nitsche's method: a rigid tie would bond whole facets, and the bonded patch would
-/// be half a facet too large all around. A tie is slack when it is made, so that bonding changes
-/// neither force nor energy.
+///   k = c E sqrt(A) phi/(1.001 - phi).
+/// Where phi = 1 the tie is a thousand times as stiff as the elements behind it, elsewhere about as
+/// stiff as they are, the scale of Nitsche's method: a rigid tie would bond whole facets, and the
+/// bonded patch would be half a facet too large all around. A tie is slack when it is made, so that
+/// bonding changes neither force nor energy.
 class ToolContact {
  public:
   /// Candidates: the boundary facets with a node within `reach` of `site` in the rest state.

@@ -382,7 +382,7 @@ double SlideJacobian::bound_of_response(const Terms& x) const {
                                                        {x.mu_g_z + v_t * w_n, v_t * w_t, zero},
                                                        {v_s * w_n, v_s * w_t, x.r.h_over_rho}}}));
   if (x.rate.high <= 1) return kRoundingFactor * norm;
-  // The runtime moves c by rho - rho_s, which is more than needed: (9a).
+  // The runtime moves c by rho - rho_s, which is more than needed: (10d).
   const Range over{std::max(0.0, x.rate.low - 1), x.rate.high - 1};
   const Range u_t = v_t - over * x.r.w_h_r;
   return kRoundingFactor *

@@ -62,7 +62,7 @@ def _failure(code, text):
     if errors:
         message = errors[-1]
     elif code == _INCOMPLETE:
-        message = "the campaign is incomplete: sites have no response; " + (lines[-1] if lines else "see the warnings")
+        message = "the command finished, but is incomplete: " + (lines[-1] if lines else "run it in a terminal")
     else:
         message = "palpate: ended with code " + str(code) + (": " + lines[-1] if lines else "; run it in a terminal")
     return CommandError(message, code)

@@ -5,9 +5,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "format/flat_library.hpp"
+#include "format/site_fields.hpp"
 #include "tests/support/sample_artifacts.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -114,6 +117,34 @@ TEST(Inspect, NamesTheSitesOfLargestContactErrors) {
   EXPECT_EQ(contact["site_of_max_contact_energy"], 5);
   EXPECT_EQ(contact["max_tension_over_force"], 0.25);
   EXPECT_EQ(contact["site_of_max_tension"], 3);
+}
+
+TEST(Inspect, SaysTheNumberThatTheFileHas) {
+  const samples::TemporaryFolder folder;
+  write_body(folder / "body.h5", samples::body(3));
+  write_body(folder / "curved.h5", samples::curved_body(3));
+  write_flat_library(folder / "library.plib", samples::library(4));
+  EXPECT_EQ(summarize_artifact(folder / "body.h5")["schema"], 1);
+  EXPECT_EQ(summarize_artifact(folder / "curved.h5")["schema"], 3);
+  const auto flat = summarize_artifact(folder / "library.plib");
+  std::ifstream file(folder / "library.plib", std::ios::binary);
+  file.seekg(8);  // format/schema/flat.md
+  EXPECT_EQ(flat["version"], file.get());
+  EXPECT_FALSE(flat.contains("schema"));
+}
+
+TEST(Inspect, SaysWhatTheFieldsOfASiteAreOf) {
+  SiteFields fields;
+  fields.vertex = 7;
+  fields.normal = {{1e-3, std::vector<float>(12, 1e-4F)}, {2e-3, std::vector<float>(12, 2e-4F)}};
+  fields.lateral = {{2e-3, {1, 0, 0}, 1e-3, std::vector<float>(12, 1e-4F)}};
+  const samples::TemporaryFolder folder;
+  write_site_fields(folder / "site-7.fields", fields);
+  const auto summary = summarize_artifact(folder / "site-7.fields");
+  EXPECT_EQ(summary["response_vertex"], 7);
+  EXPECT_EQ(summary["skin_vertices"], 4);
+  EXPECT_EQ(summary["depths"]["values"], std::vector<double>({1e-3, 2e-3}));
+  EXPECT_EQ(summary["depths_of_drags"]["values"], std::vector<double>({2e-3}));
 }
 
 TEST(Inspect, HasTheErrorOfTheMesh) {
