@@ -92,7 +92,8 @@ void print(const compare::Comparison& comparison) {
            force_text(s.worst.reference));
   }
   if (!comparison.unmatched.empty()) {
-    answer("  unmatched sites: {} (listed in comparison.json)", comparison.unmatched.size());
+    answer("  without a partner: {} (listed in comparison.json)",
+           count_text(comparison.unmatched.size(), "site or path", "sites or paths"));
   }
 }
 
@@ -106,6 +107,17 @@ void write_comparison(const fs::path& out, const compare::Comparison& comparison
   write_file_crash_safely(out / "comparison-points.csv", comparison_points_csv(comparison));
 }
 
+bool differ_in_friction(const compare::ComparedSet& a, const compare::ComparedSet& b) {
+  return !a.tool_friction.empty() && !b.tool_friction.empty() && a.tool_friction != b.tool_friction;
+}
+
+/// N, as asked for, or as the forces of the reference suggest.
+double jnd_floor(const CompareOptions& options, const compare::ComparedSet& reference) {
+  return std::isfinite(options.jnd_floor_mn)
+             ? 1e-3 * options.jnd_floor_mn
+             : compare::jnd_floor_of(reference, options.settings.jnd);
+}
+
 int compare_sets(CompareOptions options) {
   if (fs::path(options.reference).extension() == ".json") {
     compare_histories(options.reference, options.model, options.out);
@@ -114,15 +126,18 @@ int compare_sets(CompareOptions options) {
   for (const double depth : options.depths_mm) options.settings.depths.push_back(1e-3 * depth);
   const auto reference = read_set(options.reference, options.reference_body);
   const auto model = read_set(options.model, options.model_body);
-  options.settings.jnd_floor = std::isfinite(options.jnd_floor_mn)
-                                   ? 1e-3 * options.jnd_floor_mn
-                                   : compare::jnd_floor_of(reference, options.settings.jnd);
+  options.settings.jnd_floor = jnd_floor(options, reference);
   options.settings.site_tolerance = std::isfinite(options.site_tolerance_mm)
                                         ? 1e-3 * options.site_tolerance_mm
                                         : compare::site_tolerance_of(reference);
   const compare::Comparison comparison = compare::compare(reference, model, options.settings);
   say("compare: {} against {}", options.model, options.reference);
   print(comparison);
+  if (differ_in_friction(reference, model))
+    warn(
+        fmt::format("the tool of {} is {}, that of {} {}: that alone makes forces differ by "
+                    "percents",
+                    reference.name, reference.tool_friction, model.name, model.tool_friction));
   if (options.settings.jnd_floor < compare::CompareSettings{}.jnd_floor)
     answer("  a difference of {} counts as noticeable near zero force: the forces are small",
            force_text(options.settings.jnd_floor));
@@ -139,7 +154,6 @@ int compare_sets(CompareOptions options) {
 /// where the report of the case finds it.
 int compare_left_out(CompareOptions options) {
   options.left_out.out = options.out;
-  options.settings.jnd_floor = 1e-3 * options.jnd_floor_mn;
   const Workspace space = open_workspace(options.left_out);
   if (!is_measured(space)) {
     refuse("case " + space.c.name, "has no [measured]: --leave-out is for measured sites",
@@ -151,6 +165,7 @@ int compare_left_out(CompareOptions options) {
   const LeaveOut result = leave_sites_out(library, curves);
   print_line(leave_out_text(result));
   const LeaveOutSets sets = sets_of(result, library, curves);
+  options.settings.jnd_floor = jnd_floor(options, sets.measured);
   const compare::Comparison comparison =
       compare::compare(sets.measured, sets.predicted, options.settings);
   prepare_output(space.out);

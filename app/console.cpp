@@ -102,8 +102,9 @@ void warn(std::string_view text) {
   console().err.line(warning_line(text, console().err.colour));
 }
 
-void ignore_closed_pipes() {
+void report_failed_writes() {
   std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
 }
 
 bool all_printed() {

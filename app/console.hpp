@@ -68,8 +68,9 @@ std::string warning_line(std::string_view text, bool colour);
 void warn(std::string_view text);  ///< on the standard error
 
 /// Goes on when the reader of the standard output ends early, as `head` does: what is printed
-/// after that is lost, and nothing else.
-void ignore_closed_pipes();
+/// after that is lost, and nothing else. A file over the limit of its size is a write that fails,
+/// with its error, and no signal.
+void report_failed_writes();
 
 /// Whether everything that was printed on the standard output arrived. A reader that ended early
 /// has what it wanted.

@@ -90,12 +90,12 @@ int parse_and_run(int count, char** arguments) {
   CLI::App root{"palpate: precomputes the indentation of a soft body and renders it in real time",
                 "palpate"};
   root.footer(
-      "Exit codes: 0 success, 1 internal error, 2 usage, configuration, files\n"
-      "or device, 3 unusable geometry, 4 finished, but incomplete: more than a\n"
-      "twentieth of the sites have no response, any ended early with --strict,\n"
-      "hold-out points failed, records were refused, a constant was not\n"
-      "identified, a journal was damaged, or with --strict a session went\n"
-      "beyond the computed depth.\n"
+      "Exit codes: 0 success, 1 internal error or full disk, 2 usage,\n"
+      "configuration, files or device, 3 unusable geometry, 4 finished, but\n"
+      "incomplete: more than a twentieth of the sites have no response, any\n"
+      "ended early with --strict, hold-out points failed, records were refused,\n"
+      "a constant of a device was not identified, a journal was damaged, or\n"
+      "with --strict a session went beyond the computed depth.\n"
       "'palpate help SUBCOMMAND' explains a subcommand; --quiet and --verbose\n"
       "stand before or after it.\n"
       "Example: palpate build data/cases/liver.toml");
@@ -124,7 +124,7 @@ int parse_and_run(int count, char** arguments) {
 int main(int count, char** arguments) {
   try {
     palpate::app::ensure_blas_kernel(arguments);
-    palpate::app::ignore_closed_pipes();
+    palpate::app::report_failed_writes();
     return palpate::app::parse_and_run(count, arguments);
   } catch (...) {  // out of memory for the message itself
     std::fputs("error: out of memory\n", stderr);

@@ -13,6 +13,7 @@
 #include "app/case/nearest.hpp"
 #include "app/case/range_text.hpp"
 #include "format/error.hpp"
+#include "format/flat_file.hpp"
 
 namespace palpate::app {
 namespace {
@@ -55,6 +56,10 @@ bool is_auto(const toml::node& node) {
   return node.value_exact<std::string_view>() == kAutoText;
 }
 
+bool is_artifact(std::string_view bytes) {
+  return begins_flat(bytes) || bytes.starts_with("\x89HDF\r\n");
+}
+
 }  // namespace
 
 toml::table parse_toml(std::string_view text, const std::string& file_name) {
@@ -76,6 +81,9 @@ toml::table read_toml(const std::filesystem::path& path, std::string_view what) 
   if (stream.bad() || (!empty && !(text << stream.rdbuf()))) {
     refuse(path.string(), fmt::format("cannot read {}", what), "check its path and permissions");
   }
+  if (is_artifact(text.str()))
+    refuse(path.string(), fmt::format("is an artifact of palpate, not {}", what),
+           "give the case that made it, and its folder with --out");
   return parse_toml(text.str(), path.string());
 }
 

@@ -182,7 +182,8 @@ LeaveOutSets sets_of(const LeaveOut& result, const Library& library, const Curve
                     .body_sha256 = curves.body_sha256,
                     .sites = {},
                     .tool_shape = sets.measured.tool_shape,
-                    .tool_radius = sets.measured.tool_radius};
+                    .tool_radius = sets.measured.tool_radius,
+                    .tool_friction = sets.measured.tool_friction};
   for (const LeftOutSite& site : result.sites) {
     if (site.predicted.empty()) continue;
     compare::ComparedCurve curve;

@@ -155,12 +155,29 @@ class Importer {
   void take(const std::string& file, const std::string& where, const m::CsvTable& table,
             const PlacedAt& place, const m::PressCurve& curve) {
     checks_.check_depth(reader_.path_of(where).string(), curve);
+    checks_.check_stiffness(where, curve);
     checks_.check_drift(where, curve);
     const RelaxationSeries& series = s_.path.relaxation;
     const m::PressCurve press = series.empty() ? curve : m::before_relaxing(curve, series, where);
-    records_at(place.vertex).presses.push_back(press);
+    std::vector<m::PressCurve>& presses = records_at(place.vertex).presses;
+    check_new(presses, press, reader_.path_of(where).string());
+    presses.push_back(press);
     records_.push_back(press_account(file, table, place, curve));
     add_file(reader_.path_of(file));
+  }
+
+  /// A copy would count as a repeat, and tell nothing of the scatter.
+  static void check_new(const std::vector<m::PressCurve>& presses, const m::PressCurve& press,
+                        const std::string& where) {
+    const auto same = [](const m::DepthForce& a, const m::DepthForce& b) {
+      return a.depth == b.depth && a.force == b.force;
+    };
+    for (const m::PressCurve& other : presses)
+      if (std::equal(other.loading.begin(), other.loading.end(), press.loading.begin(),
+                     press.loading.end(), same))
+        throw Error(ErrorKind::Configuration, where,
+                    "has the samples of another record at its site: it is a copy, not a repeat",
+                    "name each record once");
   }
 
   SiteRecords& records_at(int vertex) {

@@ -16,6 +16,9 @@ namespace {
 
 namespace m = palpate::measured;
 
+/// Of the tool, that a press is hardly ever deep.
+constexpr double kManyRadii = 10;
+
 double extent_of(const Body& body) {
   Vec3 low = body.nodes.front(), high = low;
   for (const Vec3& x : body.nodes) {
@@ -73,11 +76,23 @@ void RecordChecks::check_depth(const std::string& where, const m::PressCurve& cu
                             length_text(*extent_)),
                 "check the unit of the displacement");
   }
-  constexpr double kManyRadii = 10;
   if (depth > kManyRadii * tool_radius_) {
     warn(fmt::format("{}: the tool goes {} deep, its radius is {}: check the units", where,
                      length_text(depth), length_text(tool_radius_)));
   }
+}
+
+void RecordChecks::check_stiffness(const std::string& where, const m::PressCurve& curve) {
+  constexpr double kSoftest = 10, kStiffest = 10e6;  // Pa
+  const m::DepthForce& end = curve.loading.back();
+  if (end.depth > kManyRadii * tool_radius_) return;  // the depth is in doubt already
+  // E* of a half-space under a sphere [Hertz 1881].
+  const double modulus = 0.75 * end.force / std::sqrt(tool_radius_ * std::pow(end.depth, 3));
+  if (!(modulus > 0) || (modulus >= kSoftest && modulus <= kStiffest)) return;
+  warn(
+      fmt::format("{}: {} at {} is the force of a half-space of {:.2g} Pa: check the units of "
+                  "force and displacement",
+                  where, force_text(end.force), length_text(end.depth), modulus));
 }
 
 void RecordChecks::check_drift(const std::string& where, const m::PressCurve& curve) {

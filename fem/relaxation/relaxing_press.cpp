@@ -77,6 +77,7 @@ class Press {
     RelaxingPress press;
     here_.sample.travel = motion.front().travel;
     press.samples.push_back(here_.sample);
+    for (const ToolMotion& to : motion) deepest_ = std::max(deepest_, to.travel);
     for (std::size_t i = 1; i < motion.size(); ++i) {
       press.reason = follow_piece(motion[i - 1], motion[i], press.samples);
       if (!press.reason.empty()) return press;
@@ -127,7 +128,8 @@ class Press {
         continue;
       }
       const double peak = std::max(peak_, norm(end->sample.force));
-      const double allowed = relaxing_.time_tolerance * peak, error = end->sample.time_error;
+      const double allowed = relaxing_.time_tolerance * std::max(peak, peak_ahead(end->sample));
+      const double error = end->sample.time_error;
       const double change = error > 0 ? kSafety * std::cbrt(allowed / error) : kMostGrowth;
       if (error > allowed) {
         reason = "its error stays above the tolerance";
@@ -142,6 +144,14 @@ class Press {
       if (duration > 0) length_ = part * duration;
     }
     return {};
+  }
+
+  /// N, what the force of a tool that sticks comes to at the largest travel if it grows in
+  /// proportion to it, which is less than it does. A sticking contact that grows from a point is
+  /// alike at every size: the part of the force by which two steps differ from one is the same in
+  /// the smallest.
+  double peak_ahead(const RelaxingSample& sample) const {
+    return no_slip_ && sample.travel > 0 ? norm(sample.force) * deepest_ / sample.travel : 0;
   }
 
   static ToolMotion at(const ToolMotion& from, const ToolMotion& to, double part) {
@@ -216,7 +226,8 @@ class Press {
   double length_ = first_step_;  ///< s, of the next time step
   State here_;
   Tool touching_;
-  double peak_ = 0;  ///< N, largest force so far
+  double peak_ = 0;     ///< N, largest force so far
+  double deepest_ = 0;  ///< m, largest travel of the motion
   int steps_ = 0;
 };
 

@@ -20,7 +20,8 @@ struct ToolMotion {
 };
 
 struct RelaxingSettings {
-  /// Largest error of the force in one time step, over the largest force so far.
+  /// Largest error of the force in one time step, over the largest force so far; of a tool that
+  /// sticks, over the force in proportion at the largest travel if that is larger.
   double time_tolerance = 1e-3;
   int max_steps = 2000;  ///< of time, those that are repeated included
 };

@@ -231,9 +231,11 @@ Library fit(const Body& body, const Curves& curves, const FitSettings& settings)
     ++fitted;
   }
   if (fitted == 0) {
-    refuse("curves of body '" + body.name + "'",
-           "no site has a normal response over half of the depth and a lateral response",
-           "see the reasons recorded with the sites; precompute with lateral depths and azimuths");
+    refuse(
+        "curves of body '" + body.name + "'",
+        "no site has a normal response over half of the depth and a lateral response",
+        "see the reasons recorded with the sites; precompute with lateral depths and azimuths, or "
+        "for measured presses give path.lateral_ratio in the sidecar");
   }
   if (library.triangles.empty()) {
     refuse("body '" + body.name + "'", "every response triangle touches a support",

@@ -114,6 +114,7 @@ class RobotBatch(unittest.TestCase):
         self.assertLess(np.median(errors), 0.05)
         comparison = json.loads((self.out / "comparison.json").read_text())
         self.assertEqual(len(comparison["curves"]), result["predicted_sites"])
+        self.assertEqual(comparison["jnd_floor_N"], 5e-3)  # docs/measured.md
 
     def test_a_slab_explains_the_presses(self):
         """The moduli of the sites follow the true forces, and finite elements are compared with the measurement."""

@@ -54,6 +54,21 @@ void warn_of_misfit(const std::vector<HomogeneousTest>& tests, HomogeneousFit& f
   }
 }
 
+/// Strains in percent that are taken as ratios give stretches that nothing soft survives.
+void warn_of_units(const std::vector<HomogeneousTest>& tests, HomogeneousFit& fit) {
+  constexpr double kMostStretch = 15, kSoftest = 1, kStiffest = 100e6;
+  for (const HomogeneousTest& test : tests) {
+    const double most = *std::max_element(test.deformation.begin(), test.deformation.end());
+    if (most > kMostStretch)
+      fit.calibration.warnings.push_back("test '" + test.name + "' goes to a deformation of " +
+                                         number_text(most) + ": check the unit of its strain");
+  }
+  if (fit.shear_modulus < kSoftest || fit.shear_modulus > kStiffest)
+    fit.calibration.warnings.push_back("a shear modulus of " + number_text(fit.shear_modulus) +
+                                       " Pa is that of nothing soft: check the units of force, "
+                                       "area and stress");
+}
+
 void warn_of_instability(const std::vector<HomogeneousTest>& tests, HomogeneousFit& fit) {
   bool in_a_test = false;
   for (std::size_t i = 0; i < tests.size(); ++i) {
@@ -184,6 +199,7 @@ void add_predictions(const std::vector<HomogeneousTest>& tests, const Incompress
   fit.all_states = stability_of_states(law, c, largest_strain(tests));
   warn_of_misfit(tests, fit);
   warn_of_instability(tests, fit);
+  warn_of_units(tests, fit);
 }
 
 }  // namespace

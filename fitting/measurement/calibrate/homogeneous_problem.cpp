@@ -93,11 +93,12 @@ std::vector<double> factors(const HomogeneousTest& test, const HomogeneousSettin
   return out;
 }
 
-/// A first guess of the shear modulus: the stress over the strain measure of a neo-Hookean solid.
-double modulus_scale(const std::vector<HomogeneousTest>& tests) {
+/// A first guess of the shear modulus: the stress over that of a neo-Hookean solid whose shear
+/// modulus is one.
+double modulus_scale(const std::vector<HomogeneousTest>& tests, double poisson) {
   double above = 0, below = 0;
-  const IncompressibleLaw unit("neo-hookean", 0.5);
-  const double young = 3;  // of a shear modulus of one
+  const IncompressibleLaw unit("neo-hookean", poisson);
+  const double young = 2 * (1 + poisson);
   for (const HomogeneousTest& test : tests) {
     for (std::size_t i = 0; i < test.nominal.size(); ++i) {
       const double g = unit.stress(&young, test.mode, test.deformation[i]);
@@ -108,8 +109,8 @@ double modulus_scale(const std::vector<HomogeneousTest>& tests) {
   return below > 0 && above > 0 ? above / below : 1;
 }
 
-DataScale scale_of(const std::vector<HomogeneousTest>& tests) {
-  DataScale scale{modulus_scale(tests), 0};
+DataScale scale_of(const std::vector<HomogeneousTest>& tests, double poisson) {
+  DataScale scale{modulus_scale(tests, poisson), 0};
   for (const HomogeneousTest& test : tests)
     for (const double s : test.deformation)
       scale.invariant = std::max(scale.invariant, first_invariant(test.mode, s));
@@ -216,7 +217,7 @@ HomogeneousProblem problem_of(const std::vector<HomogeneousTest>& tests,
   check_tests(tests, settings);
   HomogeneousProblem problem;
   LeastSquares& squares = problem.squares;
-  squares.constants = law_constants(law, scale_of(tests), settings, wide);
+  squares.constants = law_constants(law, scale_of(tests, settings.poisson), settings, wide);
   squares.confidence = settings.confidence;
   squares.known_scatter = settings.weighting == Weighting::Uncertainty;
   squares.max_iterations = kMostIterations;

@@ -344,7 +344,8 @@ ComparedSet set_of(const Curves& curves, std::string name) {
                   .body_sha256 = curves.body_sha256,
                   .sites = {},
                   .tool_shape = curves.tool.shape,
-                  .tool_radius = radius_or_unknown(curves.tool.radius)};
+                  .tool_radius = radius_or_unknown(curves.tool.radius),
+                  .tool_friction = curves.tool.friction};
   for (const SiteCurves& site : curves.sites) {
     ComparedSite out;
     out.vertex = site.vertex;
@@ -361,7 +362,8 @@ ComparedSet set_of(const Library& library, std::string name, int steps) {
                   .body_sha256 = "",
                   .sites = {},
                   .tool_shape = library.tool_shape,
-                  .tool_radius = radius_or_unknown(library.tool_radius)};
+                  .tool_radius = radius_or_unknown(library.tool_radius),
+                  .tool_friction = ""};
   for (std::size_t v = 0; v < library.responses.size(); ++v) {
     const NodeResponse& response = library.responses[v];
     if (response.status == ResponseStatus::Hole) continue;

@@ -37,6 +37,7 @@ struct ComparedSet {
   std::vector<ComparedSite> sites;
   std::string tool_shape;         ///< empty when unknown
   double tool_radius = kUnknown;  ///< m
+  std::string tool_friction;      ///< empty when unknown
 };
 
 /// The curves of a campaign or of a measurement; of a lateral path the force less that at its

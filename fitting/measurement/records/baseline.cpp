@@ -75,7 +75,11 @@ class Press {
     const std::vector<double> loading = part(force_, c_.begin, c_.loading_end);
     const std::size_t tail = std::max<std::size_t>(1, std::min<std::size_t>(5, loading.size() / 4));
     const double end = median(part(loading, loading.size() - tail, loading.size()));
-    if (end > kOnset * noise_of(loading)) return;
+    const double noise = noise_of(loading);
+    if (end > kOnset * noise) return;
+    if (end < -kOnset * noise)
+      refuse(r_.name, "the force falls as the tool goes in",
+             "check the signs of the columns of displacement and force");
     refuse(r_.name, "the force never rises above its noise",
            "check which column is the force, or press deeper");
   }

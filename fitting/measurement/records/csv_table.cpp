@@ -9,6 +9,7 @@
 
 #include "fitting/measurement/records/csv_text.hpp"
 #include "format/error.hpp"
+#include "format/number_text.hpp"
 #include "format/text.hpp"
 
 namespace palpate::measured {
@@ -21,8 +22,8 @@ struct Dialect {
   char separator;
   char decimal;
 };
-constexpr Dialect kDialects[] = {{'\t', '.'}, {';', '.'}, {',', '.'},    {'\t', ','},
-                                 {';', ','},  {',', ','}, {kBlanks, '.'}};
+constexpr Dialect kDialects[] = {{'\t', '.'}, {';', '.'}, {',', '.'},     {'\t', ','},
+                                 {';', ','},  {',', ','}, {kBlanks, '.'}, {kBlanks, ','}};
 
 /// A run of lines that are all numbers, equally many on each.
 struct Run {
@@ -94,6 +95,45 @@ std::string at_line(const std::string& file, const Line& line) {
          "the row has " + std::to_string(fields.size()) + " fields, " + std::to_string(width) +
              " expected",
          "mend or remove the row; another table needs a header of its own");
+}
+
+/// The line and the separators with the most numbers beside something else.
+struct MixedRow {
+  const Line* line = nullptr;
+  std::size_t numbers = 0;
+  std::string other;  ///< the first that is no number
+};
+
+MixedRow most_numbers(const std::vector<Line>& lines) {
+  MixedRow best;
+  for (const Dialect& dialect : kDialects)
+    for (const Line& line : lines) {
+      MixedRow row{&line, 0, {}};
+      for (const std::string& field : split(line.text, dialect.separator)) {
+        if (number_of(field, dialect.decimal))
+          ++row.numbers;
+        else if (row.other.empty())
+          row.other = field;
+      }
+      if (row.numbers > best.numbers && !row.other.empty()) best = row;
+    }
+  return best;
+}
+
+/// Refuses a file without enough rows of numbers, by what it has instead.
+[[noreturn]] void refuse_table(const std::string& file, const std::vector<Line>& lines,
+                               const Run& longest) {
+  const std::string needed = "give at least " + std::to_string(kFewestRows) +
+                             " rows of numbers alone, their columns separated by tabs, "
+                             "semicolons, commas or blanks";
+  if (longest.rows() > 0)
+    refuse(at_line(file, lines[longest.begin]),
+           "the table has " + count_text(longest.rows(), "row") + " of numbers", needed);
+  const MixedRow row = most_numbers(lines);
+  if (row.numbers > 0)
+    refuse(at_line(file, *row.line), "'" + row.other + "' beside the numbers is not one",
+           needed + "; remove columns of text");
+  refuse(file, "no table of numbers in it", needed);
 }
 
 std::string without_brackets(std::string_view text) {
@@ -265,10 +305,7 @@ CsvTable parse_csv(std::string_view text, const std::string& file,
     longest = found;
     dialect = candidate;
   }
-  if (longest.rows() < kFewestRows) {
-    refuse(file, "no table of numbers in it",
-           "give a text file with columns separated by tabs, semicolons, commas or blanks");
-  }
+  if (longest.rows() < kFewestRows) refuse_table(file, lines, longest);
   const std::vector<Run> tables = tables_of(lines, file, longest, dialect);
   const Run& run = chosen(tables, table_number, file);
   CsvTable table;

@@ -99,6 +99,8 @@ double work_of(const std::vector<DepthForce>& branch) {
 
 ContactPoint contact_by_threshold(const std::vector<DepthForce>& loading, double threshold,
                                   const std::string& where) {
+  if (std::ranges::none_of(loading, [&](const DepthForce& s) { return s.force >= threshold; }))
+    refuse(where, "no force reaches the threshold of contact", "lower the threshold");
   for (std::size_t i = loading.size(); i-- > 1;) {
     if (loading[i - 1].force >= threshold) continue;
     const double step = loading[i].depth - loading[i - 1].depth;
@@ -131,12 +133,24 @@ double rate_of(const std::vector<DepthForce>& loading, double compliance) {
   return b.time > a.time ? travel / (b.time - a.time) : kUnknown;
 }
 
+/// How many samples come before the tool has moved by a part of its whole travel: the force of rest
+/// is theirs. Not a part of the samples: a hold may have nearly all of them.
+std::size_t count_at_rest(const std::vector<double>& displacement) {
+  constexpr double kStill = 0.02;
+  const double start = median(first(displacement, std::min<std::size_t>(5, displacement.size())));
+  double travel = 0;
+  for (const double x : displacement) travel = std::max(travel, std::abs(x - start));
+  const auto moved = std::find_if(displacement.begin(), displacement.end(),
+                                  [&](double x) { return std::abs(x - start) > kStill * travel; });
+  return std::max<std::size_t>(1, static_cast<std::size_t>(moved - displacement.begin()));
+}
+
 }  // namespace
 
 Signs orient(PressRecord& record) {
   Signs signs;
-  if (record.force.empty()) return signs;
-  const std::size_t head = std::max<std::size_t>(1, record.force.size() / 20);
+  if (record.force.empty() || record.displacement.size() != record.force.size()) return signs;
+  const std::size_t head = count_at_rest(record.displacement);
   const double rest = median(first(record.force, head));
   std::size_t peak = 0;
   for (std::size_t i = 0; i < record.force.size(); ++i) {
@@ -177,6 +191,9 @@ PressCurve analyse_press(const PressRecord& record, const PressSettings& setting
   }
   curve.loading = without_pauses(beyond(loading, curve.contact.displacement));
   curve.unloading = beyond(unloading, curve.contact.displacement);
+  if (settings.method == ContactMethod::Given && curve.loading.empty())
+    refuse(record.name, "the contact point that is given is beyond the whole press",
+           "correct the point, and its unit");
   if (curve.loading.size() < kFewestInContact) {
     refuse(record.name, "fewer than " + std::to_string(kFewestInContact) + " samples in contact",
            "record more densely, or press deeper");

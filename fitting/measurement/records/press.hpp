@@ -122,7 +122,8 @@ struct PressCurve {
 PressCurve analyse_press(const PressRecord& record, const PressSettings& settings);
 
 /// Turn the signs so that displacement grows into the body and force is positive in compression.
-/// Both follow from the record: the force is largest where the tool is deepest.
+/// Both follow from the record: the force differs most from that of the start, before the tool has
+/// moved by a fiftieth of its travel, where the tool is deepest.
 /// @return the signs that displacement and force were multiplied by.
 struct Signs {
   double displacement = 1, force = 1;

@@ -2,6 +2,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "app/case/reader.hpp"
+#include "format/body.hpp"
+#include "format/error.hpp"
+#include "format/flat_library.hpp"
+#include "tests/support/sample_artifacts.hpp"
+#include "tests/support/temporary_folder.hpp"
 #include "tests/unit/app/case/good_case.hpp"
 
 namespace palpate::app {
@@ -24,6 +30,20 @@ TEST(CaseReader, RejectsWrongOrMissingUnit) {
   EXPECT_THAT(message_with("\"33.3 deg\"", "33.3"), HasSubstr("indentation.azimuths"));
   EXPECT_THAT(message_with("\"33.3 deg\"", "33.3"), HasSubstr("an angle with its unit"));
   EXPECT_THAT(message_with("\"8 mm\"", "8"), HasSubstr("a length with its unit"));
+}
+
+TEST(CaseReader, SaysThatAnArtifactIsNoCase) {
+  const samples::TemporaryFolder folder;
+  write_body(folder / "body.h5", samples::body(1));
+  write_flat_library(folder / "library.plib", samples::library(1));
+  for (const char* name : {"body.h5", "library.plib"}) {
+    try {
+      read_toml(folder / name, "the case file");
+      ADD_FAILURE() << name;
+    } catch (const Error& error) {
+      EXPECT_THAT(error.what(), HasSubstr("is an artifact of palpate, not the case file")) << name;
+    }
+  }
 }
 
 TEST(CaseReader, RejectsUnitWhereANumberIsBare) {

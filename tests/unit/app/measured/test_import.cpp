@@ -88,6 +88,33 @@ TEST_F(Imports, GiveTheForceOfTheSpecimenAtItsDepth) {
   EXPECT_TRUE(result.account.at("warnings").empty());
 }
 
+/// A file in micrometres that is said to be in millimetres: the tool is a thousand times less deep.
+TEST_F(Imports, SayWhereTheUnitsAreThoseOfNothingSoft) {
+  Bench bench;
+  bench.modulus *= 3e4;
+  bench.noise *= 3e4;
+  write_record("a.csv", bench, 1);
+  const auto warnings =
+      import_measurement(write_sidecar(press("a.csv", 7)), {}).account.at("warnings");
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_THAT(warnings.at(0).get<std::string>(), HasSubstr("check the units of force"));
+}
+
+/// Three repeats have a smaller standard error than two, and a copy is no repeat.
+TEST_F(Imports, RefuseACopyOfARecord) {
+  write_record("a.csv", {}, 1);
+  write_record("b.csv", {}, 2);
+  std::filesystem::copy_file(folder_ / "a.csv", folder_ / "copy.csv");
+  const auto refused = [&](const std::string& presses) {
+    return import_measurement(write_sidecar(press("a.csv", 7) + presses), {}).account.at("refused");
+  };
+  EXPECT_TRUE(refused(press("b.csv", 7)).empty());
+  EXPECT_TRUE(refused(press("copy.csv", 8)).empty());  // of another site
+  ASSERT_EQ(refused(press("copy.csv", 7)).size(), 1U);
+  EXPECT_THAT(refused(press("copy.csv", 7)).at(0).at("reason").get<std::string>(),
+              HasSubstr("copy.csv: has the samples of another record"));
+}
+
 /// A machine that was told 20 mm and 80 mm^2, and divided by them.
 TEST_F(Imports, UndoTheSizesByWhichAMachineMadeStrainAndStress) {
   const measured::PressRecord record = measured::press_on({}, 1);

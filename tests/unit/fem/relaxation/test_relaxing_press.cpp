@@ -70,6 +70,22 @@ TEST(RelaxingPress, WithoutSlipBondsTheSurfaceAsTheCampaign) {
   EXPECT_NEAR(force(end_of(body, settings, {{0, 0}, {0, kDepth}})), expected, 1e-4 * expected);
 }
 
+/// As a record is sampled: the first piece ends just after the touch, where two steps bond the
+/// surface otherwise than one by the same part of the force, however small they are.
+TEST(RelaxingPress, WithoutSlipFollowsADenselySampledRamp) {
+  const Body body = block();
+  CampaignSettings settings = settings_of({}, 0.3);
+  settings.indentation.friction = ToolFriction::NoSlip;
+  settings.indentation.increments = 12;
+  const CampaignContext context(body, settings, Engine::Direct);
+  const SiteCurves curves = solve_site(context, test::site_nearest(body), nullptr);
+  ASSERT_EQ(curves.status, SiteStatus::Complete);
+  const double expected = -curves.paths.front().samples.back().force[2];
+  std::vector<ToolMotion> motion;
+  for (int i = 0; i <= 40; ++i) motion.push_back({0.01 * i, kDepth * i / 40});
+  EXPECT_NEAR(force(end_of(body, settings, motion)), expected, 5e-3 * expected);
+}
+
 TEST(RelaxingPress, DragsTheBondedSurfaceAsTheCampaign) {
   const Body body = block();
   CampaignSettings settings = settings_of({}, 0.45);

@@ -202,7 +202,7 @@ function keys(data, model) {
     model.sprung.includes(1) ? el('span', {}, '\u2261 level lines: rests on springs') : null,
     kinds.has(1) ? key('body-hole', 'no response (a hole, a support or outside the press zones)') : null,
     flags(data.vertices).some((f) => f.symbol === 'cross') ? el('span', {}, '\u2715 site ended early') : null,
-    flags(data.vertices).some((f) => f.symbol === 'triangle') ? el('span', {}, '\u25b3 fit misses the computed states') : null,
+    flags(data.vertices).some((f) => f.symbol === 'triangle') ? el('span', {}, '\u25b3 fit misses the curves') : null,
     data.inclusions.length ? el('span', {}, `dashed line: outline of ${data.inclusions.map((i) => i.region).join(', ')}, inside the body`) : null,
     data.session?.drawn ? el('span', {}, 'white line: path of the contact point') : null);
 }

@@ -50,7 +50,7 @@ function misfitSentence(v) {
   if (!nodes.length) return null;
   const named = nodes.slice(0, MOST_NAMED).map((n) => `node ${n.vertex} at ${units.place(positionOf(v, n.vertex))} by ${units.percent(n.error)}`).join('; ');
   const more = nodes.length > MOST_NAMED ? `; and ${units.count(nodes.length - MOST_NAMED)} more` : '';
-  return el('p', { id: 'misfits', class: 'warn' }, `${units.count(nodes.length)} ${nodes.length === 1 ? 'node misses its' : 'nodes miss their'} computed states by more than ${units.percent(v.visible_misfit)} of the largest force: ${named}${more}. They are marked by triangles on the body.`);
+  return el('p', { id: 'misfits', class: 'warn' }, `${units.count(nodes.length)} ${nodes.length === 1 ? 'node misses its' : 'nodes miss their'} curves by more than ${units.percent(v.visible_misfit)} of the largest force: ${named}${more}. They are marked by triangles on the body.`);
 }
 
 function balancePanel(balance) {
@@ -67,7 +67,7 @@ function balancePanel(balance) {
 export function fitSection(data) {
   return el('section', { id: 'fit' },
     el('h2', {}, 'Errors of the curves'),
-    paragraph('The distance of the fit from the computed states, and the difference between the work of the tool and the energy stored in the body and its contact.', 'lead'),
+    paragraph('The distance of the fit from the states of the curves, and the difference between the work of the tool and the energy stored in the body and its contact.', 'lead'),
     accuracySentence(data.key.accuracy),
     misfitSentence(data.vertices),
     meshSentence(data.vertices, data.key.mesh_error_confidence),

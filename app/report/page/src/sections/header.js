@@ -36,7 +36,7 @@ function keyFigures(data, nodes) {
   return el('dl', { class: 'figures' },
     tile('Sites', sites(key), `${units.count(key.partial)} partial, ${units.count(key.failed)} failed`, 'sites', bad ? 'warn' : undefined),
     tile('Deepest press', units.length(key.deepest), `requested ${units.length(key.depth)}`, 'deepest'),
-    tile('Largest force', units.force(key.max_force), 'of any computed state', 'max-force'),
+    tile('Largest force', units.force(key.max_force), 'of any state of the curves', 'max-force'),
     tile('Stiffness', range, `secant, over ${units.length(key.depth)}; softest to stiffest node`, 'stiffness-range'),
     guaranteed(data.certificate),
     tile('Library', key.library_bytes ? units.bytes(key.library_bytes) : '\u2013',

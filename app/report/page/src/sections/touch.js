@@ -26,7 +26,7 @@ const CAPTION = 'The forces are computed in this page by the runtime of palpate,
 const DEFORMED = 'The skin is that of the solved states, blended by the runtime. ';
 const IMPRINT = 'The dent is the imprint of the tool on the undeformed skin, not the deformation of the body: ';
 const WHY_IMPRINT = {
-  none: () => 'the campaign kept no displacements. It keeps them for a case with depths = 4 in [deformation]. ',
+  none: () => 'no displacements are kept. A campaign keeps them for a case with depths = 4 in [deformation]; measurements have none. ',
   play: () => 'no displacements lie beside the library. ',
   other_library: () => 'deformation.pdef is of another library. Run palpate build again. ',
   other_skin: () => 'deformation.pdef is of another skin than that of the body. Run palpate build again. ',

@@ -389,6 +389,44 @@ TEST(Homogeneous, FitsScaleWithTheirStresses) {
   }
 }
 
+/// Small strains in a chamber are resisted by the modulus M = E (1 - nu)/((1 + nu)(1 - 2 nu)), also
+/// where no row is at rest.
+TEST(Homogeneous, ConfinedCompressionNeedsNoRowAtRest) {
+  for (const double nu : {0.0, 0.3, 0.49}) {
+    constexpr double kYoung = 12e3;
+    const double M = kYoung * (1 - nu) / ((1 + nu) * (1 - 2 * nu));
+    HomogeneousTest test{"chamber", Mode::Confined, {}, {}, {}, 1};
+    for (int i = 5; i <= 20; ++i) {
+      test.deformation.push_back(1 - 1e-5 * i);
+      test.nominal.push_back(-M * 1e-5 * i);
+    }
+    HomogeneousSettings settings;
+    settings.law = "neo-hookean";
+    settings.poisson = nu;
+    const Estimate young = fit_homogeneous({test}, settings).calibration.estimates.at(0);
+    EXPECT_NEAR(young.value, kYoung, 1e-3 * kYoung) << nu;
+  }
+}
+
+TEST(Homogeneous, SaysWhereTheUnitsAreThoseOfNothingSoft) {
+  HomogeneousSettings settings;
+  settings.law = "neo-hookean";
+  HomogeneousTest test{"bar", Mode::Uniaxial, {}, {}, {}, 1};
+  for (int i = 1; i <= 20; ++i) {
+    const double s = 1 + 0.01 * i;
+    test.deformation.push_back(s);
+    test.nominal.push_back(1e4 * (s - 1 / (s * s)));
+  }
+  EXPECT_THAT(fit_homogeneous({test}, settings).calibration.warnings, testing::IsEmpty());
+  HomogeneousTest in_percent = test;
+  for (double& s : in_percent.deformation) s = 1 + 100 * (s - 1);
+  EXPECT_THAT(fit_homogeneous({in_percent}, settings).calibration.warnings,
+              Contains(HasSubstr("check the unit of its strain")));
+  for (double& stress : test.nominal) stress *= 1e-6;
+  EXPECT_THAT(fit_homogeneous({test}, settings).calibration.warnings,
+              Contains(HasSubstr("check the units of force, area")));
+}
+
 TEST(Homogeneous, RefusesWhatCannotBeFitted) {
   const auto refusal = [](const std::vector<HomogeneousTest>& tests, HomogeneousSettings settings) {
     try {

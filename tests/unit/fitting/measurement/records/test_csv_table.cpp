@@ -71,6 +71,11 @@ TEST(Csv, ReadsDecimalCommas) {
   EXPECT_THAT(column_in_si(table, "Kraft", Dimension::Force), ElementsAre(1, 2.0005, 3));
 }
 
+TEST(Csv, ReadsDecimalCommasBetweenBlanks) {
+  const CsvTable table = parse_csv("Weg/mm Kraft/mN\n0,5 1000\n1,0 2000,5\n1,5 3000\n", "a.txt");
+  EXPECT_THAT(column_in_si(table, "Kraft", Dimension::Force), ElementsAre(1, 2.0005, 3));
+}
+
 TEST(Csv, ReadsUnitsBesideTheNames) {
   for (const char* header : {"x (mm),f (N)", "x [mm],f [N]", "x / mm,f / N", "x in mm,f in N",
                              "\"x, mm\",\"f, N\"", "x_mm,f_N"}) {
@@ -185,6 +190,9 @@ TEST(Csv, NeverSkipsARow) {
   EXPECT_THAT(refusal("\"x (mm)\",\"f (N)\"\n\"1\",\"2\"\n\"3\",\"4\"\n\"5\",\"6\"\n\"7\",\"\"\n"),
               HasSubstr("a.csv:5: field 2 is empty"));
   EXPECT_THAT(refusal("nothing here\n"), HasSubstr("no table of numbers"));
+  EXPECT_THAT(refusal("a,b\n1,2\n3,4\n"), HasSubstr(":2: the table has 2 rows of numbers"));
+  EXPECT_THAT(refusal("a,b,c\n1,2,S0\n3,4,S0\n5,6,S0\n"),
+              HasSubstr(":2: 'S0' beside the numbers is not one"));
   EXPECT_THAT(refusal(""), HasSubstr("no table of numbers"));
 }
 

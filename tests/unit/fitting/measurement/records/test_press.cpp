@@ -173,6 +173,26 @@ TEST(Press, SignsOfTheMachineDoNotMatter) {
   }
 }
 
+/// Two seconds of rest, a ramp of three, and a hold that has 98 % of the samples.
+TEST(Press, SignsOfALongHoldAreFound) {
+  for (const double sx : {1.0, -1.0}) {
+    for (const double sf : {1.0, -1.0}) {
+      PressRecord record{"hold", {}, {}, {}};
+      for (int i = 0; i < 3050; ++i) {
+        const double t = 0.1 * i, ramp = std::clamp((t - 2) / 3, 0.0, 1.0);
+        record.time.push_back(t);
+        record.displacement.push_back(0.1 + sx * 2e-3 * ramp);
+        record.force.push_back(0.02 + sf * ramp * (0.2 + 0.3 * std::exp(-std::max(0.0, t - 5))));
+      }
+      const Signs signs = orient(record);
+      EXPECT_EQ(signs.displacement, sx);
+      EXPECT_EQ(signs.force, sf);
+      EXPECT_GT(record.displacement.back(), record.displacement.front());
+      EXPECT_GT(record.force.back(), record.force.front());
+    }
+  }
+}
+
 TEST(Press, RefusesWhatCannotBeSortedOut) {
   Bench bench;
   bench.contact = -0.0005;
@@ -185,6 +205,17 @@ TEST(Press, RefusesWhatCannotBeSortedOut) {
   PressSettings compliant;
   compliant.compliance = 0.05e-3;
   EXPECT_THAT(refusal(press_on(bench, 1), compliant), HasSubstr("check the units of force"));
+  PressRecord reversed = press_on({}, 1);
+  for (double& f : reversed.force) f = -f;
+  EXPECT_THAT(refusal(reversed), HasSubstr("the force falls as the tool goes in"));
+  PressSettings high;
+  high.method = ContactMethod::Threshold;
+  high.threshold = 1000;
+  EXPECT_THAT(refusal(press_on({}, 1), high), HasSubstr("no force reaches the threshold"));
+  PressSettings beyond;
+  beyond.method = ContactMethod::Given;
+  beyond.contact = 0.5;
+  EXPECT_THAT(refusal(press_on({}, 1), beyond), HasSubstr("beyond the whole press"));
   PressRecord still = press_on({}, 1);
   still.displacement.assign(still.displacement.size(), 0.001);
   EXPECT_THAT(refusal(still), HasSubstr("no press"));
