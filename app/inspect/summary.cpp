@@ -122,6 +122,7 @@ Json contact_of(const Curves& curves) {
           contact_energy.take(sample.contact_energy / sample.strain_energy, site.vertex);
         if (norm(sample.force) > 0) tension.take(sample.tension / norm(sample.force), site.vertex);
       }
+  if (std::max({penetration.vertex, contact_energy.vertex, tension.vertex}) < 0) return "unknown";
   return {{"max_penetration", with_unit(penetration.value, "m")},
           {"site_of_max_penetration", penetration.vertex},
           {"max_contact_energy_over_strain_energy", contact_energy.value},
@@ -152,6 +153,7 @@ Json energy_of(const Curves& curves) {
       paths += std::isnan(here) ? 0 : 1;
       beyond += here > kHalfAPercent ? 1 : 0;
     }
+  if (paths == 0) return "unknown";
   return {{"max_imbalance", imbalance.value},
           {"site_of_max_imbalance", imbalance.vertex},
           {"paths_with_balance", paths},
@@ -199,7 +201,7 @@ Json summary_of(const Curves& curves) {
           {"sites_not_complete", failures.size()},
           {"samples", samples},
           {"max_force", with_unit(force, "N")},
-          {"min_jacobian", jacobian},
+          {"min_jacobian", std::isnan(jacobian) ? Json("unknown") : Json(jacobian)},
           {"contact", contact_of(curves)},
           {"energy", energy_of(curves)},
           {"mesh_error", mesh_error_of(curves)},

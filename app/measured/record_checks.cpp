@@ -16,7 +16,7 @@ namespace {
 
 namespace m = palpate::measured;
 
-/// Of the tool, that a press is hardly ever deep.
+/// The depth of a press is hardly ever so many radii of its tool.
 constexpr double kManyRadii = 10;
 
 double extent_of(const Body& body) {

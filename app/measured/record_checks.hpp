@@ -28,7 +28,7 @@ class RecordChecks {
   /// that is many times the tool where there is no body to compare with.
   /// @throws Error(Configuration) for a press deeper than the body.
   void check_depth(const std::string& where, const measured::PressCurve& curve);
-  /// Of a wrong unit the specimen is far stiffer, or softer, than what is soft.
+  /// A wrong unit makes the specimen far stiffer, or softer, than what is soft.
   void check_stiffness(const std::string& where, const measured::PressCurve& curve);
   /// What the samples out of contact leave open about the force at the end of loading.
   void check_drift(const std::string& where, const measured::PressCurve& curve);

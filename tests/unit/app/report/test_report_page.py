@@ -79,8 +79,12 @@ def to_micrometres(data):
 
 
 def to_many_sites(data):
-    """A calibration of two shared constants and a modulus of each of twenty sites."""
+    """A calibration of a slab: two shared constants and a modulus of each of twenty sites."""
     c = data["calibration"]
+    c["slab"] = {"law": "demiray-fung", "poisson": 0.49, "stiffening_name": "b", "median_shear_modulus_Pa": 5930,
+                 "thickness_m": {"identified": "upper bound", "value": 8e-3, "low": None, "high": 10.4e-3},
+                 "stiffening": {"identified": "interval", "value": 2.33, "low": 1.77, "high": 4.48},
+                 "thickness_range_m": [7.5e-3, 60e-3], "stiffening_range": [0.01, 5], "case_material": "mu = \"5.93 kPa\""}
     c["constants"] += [{**c["constants"][0], "name": f"shear modulus of site {i}", "value": 1000 + 100 * i, "profile": []}
                        for i in range(20)]
     size = len(c["constants"])
@@ -188,7 +192,8 @@ class ReportPage(unittest.TestCase):
         text = self.many.by_id["calibration"].replace("\u00a0", " ").replace("\u202f", "")
         self.assertEqual(self.many.root["data-ready"], "ok")
         for words in ("shear modulus of 20 sitesmedian 2.00 kPa, from 1.00 kPa to 2.90 kPa", "All 22 constants",
-                      "Largest with one of a site", "correlations.csv",
+                      "Largest with one of a site", "correlations.csv", "Thickness8.00 mm, at most 10.4 mm",
+                      "Stiffening b2.33, 1.77 to 4.48", "Shear modulus5.93 kPa", "mu = \"5.93 kPa\"",
                       # C01 with the sites 0 to 19: -0.02 - 0.001 j
                       "\u22120.031 (\u22120.041 to \u22120.022)",
                       "\u22120.421, shear modulus of site 18 and shear modulus of site 19"):

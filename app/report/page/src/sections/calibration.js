@@ -199,10 +199,30 @@ function relaxationFunction(c) {
       units.percent(r.relative_rms), units.force(r.instantaneous_force_N.value), units.force(r.long_term_force_N.value)]), [2, 3, 4])];
 }
 
+/** A range of which the data may show one end only, as they do of the thickness of a thick slab. */
+function identified(range, text) {
+  const { value, low, high } = range;
+  if (range.identified === 'interval') return `${text(value)}, ${text(low)} to ${text(high)}`;
+  if (range.identified === 'upper bound') return `${text(value)}, at most ${text(high)}`;
+  if (range.identified === 'lower bound') return `${text(value)}, at least ${text(low)}`;
+  return `${text(value)}, which the records do not determine`;
+}
+
+function slabFacts(c) {
+  const { slab } = c;
+  return [definitions([
+    ['Law', `${slab.law}, Poisson\u2019s ratio ${units.significant(slab.poisson)}`],
+    ['Thickness', identified(slab.thickness_m, units.length)],
+    [`Stiffening ${slab.stiffening_name}`, identified(slab.stiffening, units.significant)],
+    ['Shear modulus', `${units.pressure(slab.median_shear_modulus_Pa)}, the median of the sites`],
+    ['Tried', `thicknesses of ${slab.thickness_range_m.map(units.length).join(' to ')}, ${slab.stiffening_name} of ${slab.stiffening_range.map((x) => units.significant(x)).join(' to ')}`],
+  ], 'facts'), el('pre', {}, slab.case_material)];
+}
+
 function lead(c) {
   if (c.relaxation) return `A Prony series from ${units.count(c.records.length)} records over time. Source: ${c.source}.`;
   return c.law
-    ? `Constants of the law ${c.law}, from ${units.count(c.tests.length)} tests. Source: ${c.source}.`
+    ? `Constants of the law ${c.law}, from ${units.count(c.tests.length)} ${c.tests.length === 1 ? 'test' : 'tests'}. Source: ${c.source}.`
     : `Constants of ${c.slab ? 'a slab' : 'regions of the body'}, from ${units.count(c.paths.length)} measured paths.`;
 }
 
@@ -212,6 +232,7 @@ export function calibrationSection(data) {
   return el('section', { id: 'calibration' },
     el('h2', {}, 'Calibration'),
     paragraph(lead(c), 'lead'),
+    c.slab ? slabFacts(c) : null,
     constantTables(c),
     recordFigures(c),
     c.relaxation ? relaxationFunction(c) : null,
