@@ -92,7 +92,7 @@ function bodyLines(data) {
     ['Under the tool', pressed(data)],
     ['Supports', `${units.count(body.fixed_nodes)} fixed nodes; ${body.sprung_facets ? `${units.count(body.sprung_facets)} facets on springs; ` : ''}${units.count(body.sites)} of ${units.count(body.vertices)} response nodes may be pressed`],
     ['Regions', body.regions.map((r) => `${r.name} (${units.count(r.tetrahedra)} tetrahedra)`).join(', ')],
-    ['Materials', linesOf(materialLines(data))],
+    ['Materials', data.certificate?.basis === 'measured' ? 'in no curve: all of them are measured' : linesOf(materialLines(data))],
   ].filter(([, line]) => line !== null);
 }
 
