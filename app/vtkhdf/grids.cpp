@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "app/vtkhdf/grids.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
+#include "fitting/response/leaning_response.hpp"
 #include "format/error.hpp"
+#include "format/tangent_frame.hpp"
 #include "runtime/response_curve.hpp"
 
 namespace palpate::vtkhdf {
@@ -19,22 +22,55 @@ std::string region_legend(const std::vector<std::string>& names) {
   return legend + ".";
 }
 
-/// Force and slope of a response at one deflection, for all vertices.
+/// Force and slope at one deflection, for all vertices; NaN at holes.
 struct Samples {
   std::vector<double> force;
   std::vector<double> slope;
+
+  /// Those of a force over a deflection.
+  template <class Force>
+  void add(const Force& at, double deflection) {
+    constexpr double kDifference = 1e-3;
+    const double step = kDifference * deflection;
+    force.push_back(at(deflection));
+    slope.push_back((at(deflection + step) - at(deflection - step)) / (2 * step));
+  }
+  void add_hole() {
+    force.push_back(std::numeric_limits<double>::quiet_NaN());
+    slope.push_back(std::numeric_limits<double>::quiet_NaN());
+  }
 };
 
-Samples samples_at(const Library& library, ResponseCurve NodeResponse::*which, double depth) {
-  const double none = std::numeric_limits<double>::quiet_NaN();
+/// Of straight presses to a depth, as they are rendered.
+Samples presses(const Library& library, double depth) {
   Samples samples;
-  for (const NodeResponse& response : library.responses) {
-    const bool hole = response.status == ResponseStatus::Hole;
-    const runtime::CurveValue value = hole
-                                          ? runtime::CurveValue{none, none, none}
-                                          : runtime::CompiledCurve(response.*which).evaluate(depth);
-    samples.force.push_back(value.force);
-    samples.slope.push_back(value.slope);
+  for (const NodeResponse& node : library.responses) {
+    if (node.status == ResponseStatus::Hole) {
+      samples.add_hole();
+      continue;
+    }
+    const runtime::CompiledCurve g(node.normal);
+    const fitting::LeaningResponse leaning(node, library.kind);
+    samples.add([&](double z) { return g.force(z) + leaning.normal_force(z); }, depth);
+  }
+  return samples;
+}
+
+/// Of drags at a depth across the soft axis: as far as the depth, or to the last knot.
+Samples drags(const Library& library, double depth) {
+  Samples samples;
+  for (std::size_t v = 0; v < library.responses.size(); ++v) {
+    const NodeResponse& node = library.responses[v];
+    if (node.status == ResponseStatus::Hole) {
+      samples.add_hole();
+      continue;
+    }
+    const Vec3 across = cross(library.inward[v], vec3_of(node.soft_axis));
+    const Vec3 direction =
+        norm(across) > 0 ? (1 / norm(across)) * across : tangent_frame(library.inward[v])[0];
+    const fitting::LeaningResponse leaning(node, library.kind);
+    samples.add([&](double d) { return leaning.drag_force(depth, d, direction); },
+                std::min(depth, static_cast<double>(node.lateral.knot.back())));
   }
   return samples;
 }
@@ -120,20 +156,21 @@ Grid library_grid(const Library& library, double depth) {
   grid.points = library.positions;
   grid.add_cells(library.triangles);
   grid.provenance = library.provenance;
-  const std::string at = " at a deflection of " + std::to_string(depth * 1e3) + " mm.";
-  Samples normal = samples_at(library, &NodeResponse::normal, depth);
-  Samples lateral = samples_at(library, &NodeResponse::lateral, depth);
-  grid.point_data = {{"inward", "1", "u^z, into the body.", library.inward},
-                     {"status", "1", "0 fitted, 1 interpolated, 2 hole.",
-                      column_of(library.responses, &NodeResponse::status)},
-                     {"normal_force", "N", "f^z" + at, std::move(normal.force)},
-                     {"normal_stiffness", "N/m", "Slope of f^z" + at, std::move(normal.slope)},
-                     {"lateral_force", "N", "f^r" + at, std::move(lateral.force)},
-                     {"lateral_stiffness", "N/m", "Slope of f^r" + at, std::move(lateral.slope)},
-                     {"normal_error", "N", "Largest |fit - sample|, normal.",
-                      column_of(library.responses, &NodeResponse::normal_error)},
-                     {"lateral_error", "N", "Largest |fit - sample|, lateral.",
-                      column_of(library.responses, &NodeResponse::lateral_error)}};
+  const std::string at = " at a depth of " + std::to_string(depth * 1e3) + " mm";
+  const std::string drag = at + ", of a drag as far as that or to the last knot, as rendered.";
+  Samples normal = presses(library, depth), lateral = drags(library, depth);
+  grid.point_data = {
+      {"inward", "1", "u^z, into the body.", library.inward},
+      {"status", "1", "0 fitted, 1 interpolated, 2 hole.",
+       column_of(library.responses, &NodeResponse::status)},
+      {"normal_force", "N", "Of a straight press" + at + ", as rendered.", std::move(normal.force)},
+      {"normal_stiffness", "N/m", "Slope of the normal force" + at + ".", std::move(normal.slope)},
+      {"lateral_force", "N", "Along the drag" + drag, std::move(lateral.force)},
+      {"lateral_stiffness", "N/m", "Slope of the lateral force" + drag, std::move(lateral.slope)},
+      {"normal_error", "N", "Largest |fit - sample|, normal.",
+       column_of(library.responses, &NodeResponse::normal_error)},
+      {"lateral_error", "N", "Largest |fit - sample|, lateral.",
+       column_of(library.responses, &NodeResponse::lateral_error)}};
   if (!library.certificate.triangles.empty()) {
     add_certificate(library.certificate.triangles, grid);
   }

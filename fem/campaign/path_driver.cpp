@@ -112,6 +112,9 @@ PathDriver::Outcome PathDriver::equilibrate(double s, int halvings, Displacement
 
 std::string PathDriver::fault_of(const CurveSample& sample, const Displacement& u) const {
   const PartTimer timer(Part::BodyPasses);
+  if (const auto touch = problem_.contact.touch_of_support(u))
+    return "the tool touches a support at " + point_text(*touch) +
+           ": nothing soft answers from there on";
   if (sample.penetration > kLargestPenetration * problem_.tool_radius)
     return "the tool cuts into the surface, by " + length_text(sample.penetration) +
            ", at which what it meets is no longer soft: a support, or a region much stiffer than "

@@ -346,6 +346,16 @@ double ToolContact::penetration(const Displacement& u) const {
   return deepest;
 }
 
+std::optional<Eigen::Vector3d> ToolContact::touch_of_support(const Displacement& u) const {
+  const auto fixed = [&](int node) { return mesh_->fixed[to_index(node)]; };
+  for (const Point& point : points_) {
+    const Facet& facet = facets_[to_index(point.facet)];
+    if (!std::all_of(facet.begin(), facet.end(), fixed)) continue;
+    if (const Eigen::Vector3d x = position(point, u); gap(point, x) < 0) return x;
+  }
+  return std::nullopt;
+}
+
 std::vector<double> ToolContact::facet_forces(const Displacement& u) const {
   std::vector<double> force(facets_.size(), 0);
   for (const Point& point : points_) {

@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "fem/contact/tool.hpp"
@@ -128,6 +129,8 @@ class ToolContact {
   /// N, sum of the tensile forces of the ties on facets: without adhesion the surface would
   /// separate there.
   double tension(const Displacement& u) const;
+  /// Where the tool touches a facet that a support fixes, m; nothing where it touches none.
+  std::optional<Eigen::Vector3d> touch_of_support(const Displacement& u) const;
   /// Largest depth of a candidate point of the surface at `u` inside `tool`.
   double penetration_of(const Tool& tool, const Displacement& u) const;
 

@@ -5,8 +5,10 @@
 #include <cmath>
 
 #include "fitting/measurement/records/statistics.hpp"
+#include "fitting/response/leaning_response.hpp"
 #include "format/error.hpp"
 #include "format/number_text.hpp"
+#include "format/tangent_frame.hpp"
 #include "runtime/response_curve.hpp"
 
 namespace palpate::compare {
@@ -34,22 +36,28 @@ ComparedCurve curve_of(const CurvePath& path) {
   return curve;
 }
 
-ComparedCurve curve_of(const ResponseCurve& response, PathKind kind, int steps) {
+/// Along the path of another curve.
+ComparedCurve curve_along(const ComparedCurve& path, const RenderedVertex& vertex) {
   ComparedCurve curve;
-  curve.kind = kind;
-  const runtime::CompiledCurve compiled(response);
-  const double end = response.knot.back();
-  for (int i = 0; i <= steps; ++i) {
-    const double d = end * i / steps;
+  curve.kind = path.kind;
+  curve.lateral_depth = path.lateral_depth;
+  curve.direction = path.direction;
+  const bool normal = path.kind == PathKind::Normal;
+  const NodeResponse& node = vertex.response;
+  const runtime::CompiledCurve g(node.normal);
+  const fitting::LeaningResponse leaning(node, vertex.kind);
+  const double end = (normal ? node.normal : node.lateral).knot.back();
+  for (int i = 0; i <= vertex.steps; ++i) {
+    const double d = end * i / vertex.steps;
     curve.displacement.push_back(d);
-    curve.force.push_back(compiled.force(d));
+    curve.force.push_back(normal ? g.force(d) + leaning.normal_force(d)
+                                 : leaning.drag_force(path.lateral_depth, d, path.direction));
     curve.uncertainty.push_back(kUnknown);
     curve.scatter.push_back(kUnknown);
   }
   return curve;
 }
 
-/// A response of a library has no depth and direction: it stands for all of them.
 bool same_path(const ComparedCurve& a, const ComparedCurve& b, const CompareSettings& settings) {
   if (a.kind != b.kind) return false;
   if (a.kind == PathKind::Normal) return true;
@@ -58,6 +66,25 @@ bool same_path(const ComparedCurve& a, const ComparedCurve& b, const CompareSett
   const double deeper = std::max(a.lateral_depth, b.lateral_depth);
   if (std::abs(a.lateral_depth - b.lateral_depth) > settings.depth_tolerance * deeper) return false;
   return dot(a.direction, b.direction) > std::cos(settings.direction_tolerance);
+}
+
+/// The curves of a site, of a library on the paths that its partner has.
+std::vector<ComparedCurve> curves_beside(const ComparedSite& site, const ComparedSite& other) {
+  if (!site.rendered || other.rendered) return site.curves;
+  std::vector<ComparedCurve> curves;
+  for (const ComparedCurve& path : other.curves)
+    curves.push_back(curve_along(path, *site.rendered));
+  return curves;
+}
+
+/// The first curve of a site along the path of another; nothing where there is none.
+std::optional<ComparedCurve> partner_on(const ComparedCurve& path, const ComparedSite& site,
+                                        const CompareSettings& settings) {
+  if (site.rendered) return curve_along(path, *site.rendered);
+  const auto found = std::find_if(
+      site.curves.begin(), site.curves.end(),
+      [&](const ComparedCurve& candidate) { return same_path(path, candidate, settings); });
+  return found == site.curves.end() ? std::nullopt : std::optional(*found);
 }
 
 const ComparedSite* partner_of(const ComparedSite& site, const ComparedSet& set, bool by_vertex,
@@ -367,10 +394,17 @@ ComparedSet set_of(const Library& library, std::string name, int steps) {
   for (std::size_t v = 0; v < library.responses.size(); ++v) {
     const NodeResponse& response = library.responses[v];
     if (response.status == ResponseStatus::Hole) continue;
-    set.sites.push_back({static_cast<std::int32_t>(v),
-                         library.positions[v],
-                         {curve_of(response.normal, PathKind::Normal, steps),
-                          curve_of(response.lateral, PathKind::Lateral, steps)}});
+    ComparedSite site{static_cast<std::int32_t>(v),
+                      library.positions[v],
+                      {},
+                      RenderedVertex{response, library.kind, steps}};
+    ComparedCurve path;
+    site.curves.push_back(curve_along(path, *site.rendered));
+    path.kind = PathKind::Lateral;
+    path.lateral_depth = static_cast<double>(response.normal.knot.back());
+    path.direction = tangent_frame(library.inward[v])[0];
+    site.curves.push_back(curve_along(path, *site.rendered));
+    set.sites.push_back(std::move(site));
   }
   return set;
 }
@@ -411,18 +445,12 @@ Comparison compare(const ComparedSet& reference, const ComparedSet& model,
       out.unmatched.push_back(where + " has no partner");
       continue;
     }
-    for (const ComparedCurve& curve : site.curves) {
-      bool found = false;
-      for (const ComparedCurve& candidate : other->curves) {
-        if (!same_path(curve, candidate, settings)) continue;
-        out.curves.push_back(compare_curves(site, *other, Pair(curve, candidate), settings));
-        found = true;
-        break;
-      }
-      if (!found) {
+    for (const ComparedCurve& curve : curves_beside(site, *other)) {
+      if (const auto partner = partner_on(curve, *other, settings))
+        out.curves.push_back(compare_curves(site, *other, Pair(curve, *partner), settings));
+      else
         out.unmatched.push_back(where + ": its " + path_name(curve.kind, curve.lateral_depth) +
                                 " has no partner");
-      }
     }
   }
   if (out.curves.empty()) {

@@ -3,6 +3,7 @@
 // against either, or two libraries. Figures and their definitions: docs/measured.md.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,11 +25,19 @@ struct ComparedCurve {
   double contact_uncertainty = kUnknown;  ///< m
 };
 
+/// A vertex of a library, whose curve along any path is the one that is rendered there.
+struct RenderedVertex {
+  NodeResponse response;
+  ResponseKind kind = ResponseKind::Decoupled;
+  int steps = 0;  ///< of a curve
+};
+
 /// One site of a set.
 struct ComparedSite {
   std::int32_t vertex = -1;
   Vec3 position{kUnknown, kUnknown, kUnknown};  ///< m, where known
   std::vector<ComparedCurve> curves;
+  std::optional<RenderedVertex> rendered{};  ///< of a library
 };
 
 struct ComparedSet {
@@ -43,7 +52,9 @@ struct ComparedSet {
 /// The curves of a campaign or of a measurement; of a lateral path the force less that at its
 /// start.
 ComparedSet set_of(const Curves& curves, std::string name);
-/// The responses of a library on `steps` even steps up to their last knot. Holes are left out.
+/// What a library renders, on `steps` even steps up to the last knot: along the paths of what it is
+/// compared with; along a straight press and a drag at its deepest point where that is a library
+/// too. Holes are left out.
 ComparedSet set_of(const Library& library, std::string name, int steps = 48);
 
 struct CompareSettings {

@@ -119,8 +119,8 @@ TEST(PathDriver, EndsANoSlipPressWithASampleOfTheWantedAccuracy) {
   }
 }
 
-/// The tool reaches over a fixed rim that the penalty cannot push away.
-TEST(PathDriver, EndsThePathWhereTheToolCutsIntoFixedSurface) {
+/// The tool reaches over a fixed rim: from there on a rigid body answers.
+TEST(PathDriver, EndsThePathWhereTheToolTouchesASupport) {
   Body body = test::make_block(test::even(-0.016, 0.016, 8), test::even(-0.016, 0.016, 8),
                                test::even(-0.012, 0, 3));
   const std::int32_t site = test::site_nearest(body);
@@ -132,7 +132,7 @@ TEST(PathDriver, EndsThePathWhereTheToolCutsIntoFixedSurface) {
   const SiteCurves curves =
       solve_site(CampaignContext(body, settings, Engine::SharedFactor), site, nullptr);
   EXPECT_NE(curves.status, SiteStatus::Complete);
-  EXPECT_THAT(curves.reason, HasSubstr("the tool cuts into the surface"));
+  EXPECT_THAT(curves.reason, HasSubstr("the tool touches a support at"));
 }
 
 constexpr double kRadius = 0.005;

@@ -268,6 +268,33 @@ TEST(Compare, ALibraryAndCurvesAreMatchedByVertex) {
   EXPECT_NEAR(c.curves[0].position[0], 0.01, 1e-12);
 }
 
+/// A coupled library renders a drag at a depth z by w(z) f^r.
+TEST(Compare, ALibraryIsComparedAsItIsRendered) {
+  Library library = library_of(0, 400);
+  library.kind = ResponseKind::Coupled;
+  for (NodeResponse& response : library.responses)
+    response.coupling = {0.5F, {{0, 0.004F}, {125, 125}}};
+  Curves curves;
+  curves.sites.push_back({1, SiteStatus::Complete, "", 0, {path_of(1, 0, 24)}});
+  for (const double depth : {0.002, 0.004}) {
+    CurvePath drag{PathKind::Lateral, depth, {1, 0, 0}, {}};
+    for (int i = 0; i <= 8; ++i) {
+      CurveSample sample;
+      sample.displacement = 0.002 * i / 8;
+      sample.force = {50 * (0.5 + 125 * depth) * sample.displacement, 0, 0};
+      drag.samples.push_back(sample);
+    }
+    curves.sites[0].paths.push_back(drag);
+  }
+  for (const bool forth : {true, false}) {
+    const ComparedSet measured = set_of(curves, "m"), rendered = set_of(library, "l");
+    const Comparison c = forth ? compare(measured, rendered, {}) : compare(rendered, measured, {});
+    ASSERT_EQ(c.curves.size(), 3U);
+    EXPECT_EQ(c.summaries.at(1).curves, 2U);
+    EXPECT_LT(c.summaries.at(1).rmse, 1e-6) << forth;  // of 0.1 N
+  }
+}
+
 TEST(MonotoneCubic, IsExactForLinesAndNeverOvershoots) {
   const MonotoneCubic line({0, 1, 3}, {0, 2, 6});
   EXPECT_NEAR(line.value(2.2), 4.4, 1e-12);
