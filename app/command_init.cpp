@@ -52,7 +52,9 @@ int write_first_case(const InitOptions& options) {
       made, {options.sites, options.minutes, options.threads > 0 ? options.threads : processors()});
   write_file_crash_safely(target, first.toml);
   for (const std::string& remark : first.remarks) say("  {}", remark);
-  say("init: {}; next: palpate build {}", target.string(), target.string());
+  const std::string name = target.string();
+  const bool plain = name.find(' ') == std::string::npos;
+  say("init: {}; next: palpate build {}", name, plain ? name : '"' + name + '"');
   return kExitDone;
 }
 

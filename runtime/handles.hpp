@@ -3,6 +3,7 @@
 // make a library in memory. Not installed.
 #pragma once
 
+#include <atomic>
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -68,4 +69,5 @@ struct palpate_state : palpate::runtime::PosedContact {
   // Of the library and the settings, for certification.
   palpate::CertifiedRange certified_range;
   double friction, lipschitz_bound;
+  std::atomic<bool> in_loop{false};  ///< from the start of a loop until it is stopped
 };

@@ -321,9 +321,9 @@ int palpate_state_set_pose(palpate_state* state, const double position[3],
   std::copy_n(position, 3, pose.position.begin());
   for (std::size_t i = 0; i < 3; ++i) std::copy_n(rotation + 3 * i, 3, pose.rotation[i].begin());
   if (!pose.is_rigid(kRigid)) {
-    return fail(
-        PALPATE_ERROR_ARGUMENT,
-        "palpate_state_set_pose: rotation must be orthonormal and right-handed, all finite");
+    return fail(PALPATE_ERROR_ARGUMENT,
+                "palpate_state_set_pose: position must be finite and rotation orthonormal and "
+                "right-handed");
   }
   state->set_pose(pose);
   return PALPATE_OK;

@@ -392,8 +392,9 @@ typedef struct palpate_loop palpate_loop;
 /* Sets size and every default. */
 PALPATE_API void palpate_loop_settings_default(palpate_loop_settings* settings);
 /* Starts the loop. The state and the context of the device must outlive it. settings may be NULL:
- * the defaults. On failure *loop is NULL. PALPATE_ERROR_UNCERTIFIED where the constants of the
- * device do not certify the rate and uncertified is 0: the comparison of `palpate run`. */
+ * the defaults. On failure *loop is NULL. PALPATE_ERROR_ARGUMENT where a loop has the state that
+ * has not been stopped, PALPATE_ERROR_UNCERTIFIED where the constants of the device do not certify
+ * the rate and uncertified is 0: the comparison of `palpate run`. */
 PALPATE_API int palpate_loop_start(palpate_state* state, const palpate_device* device,
                                    const palpate_loop_settings* settings, palpate_loop** loop);
 /* Is the loop certified passive at its rate, on the device of its constants? 1, or 0 and

@@ -74,11 +74,29 @@ palpate::runtime::LoopThreadSettings thread_of(const palpate_loop_settings& s) {
 
 }  // namespace
 
+/// A state while a loop steps it. @throws Error(Configuration) where another one does.
+class OwnedState {
+ public:
+  explicit OwnedState(palpate_state& state) : state_(state) {
+    if (state_.in_loop.exchange(true))
+      throw palpate::Error(palpate::ErrorKind::Configuration, "palpate_loop_start",
+                           "the state belongs to a loop that has not been stopped",
+                           "stop that loop, or create another state");
+  }
+  ~OwnedState() { state_.in_loop = false; }
+  OwnedState(const OwnedState&) = delete;
+  OwnedState& operator=(const OwnedState&) = delete;
+
+ private:
+  palpate_state& state_;
+};
+
 struct palpate_loop {
   palpate_loop(palpate_state& state, const palpate_device& functions,
                const palpate_loop_settings& settings, std::string why_not_certified)
       : not_certified(std::move(why_not_certified)),
         device(functions),
+        owned(state),
         loop(device, state, safety_of(settings, functions), queue_of(settings)),
         thread(loop, device, thread_of(settings)) {}
 
@@ -91,6 +109,7 @@ struct palpate_loop {
   std::string not_certified;  ///< why; empty: it is certified
   CallerDevice device;
   std::optional<palpate::runtime::StepQueue> record;
+  OwnedState owned;
   palpate::runtime::ForceLoop loop;
   palpate::runtime::LoopThread thread;
 };

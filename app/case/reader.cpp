@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdlib>
 #include <fstream>
 #include <limits>
 #include <sstream>
@@ -233,10 +235,27 @@ void TableReader::integer(int& value, const Key& key) {
   value = static_cast<int>(*found);
 }
 
+namespace {
+
+/// A number in the range: the one that stands there in quotes, else one for an example.
+double number_like(const toml::node& node, const Range& range) {
+  const std::string text = node.value<std::string>().value_or("");
+  char* end = nullptr;
+  const double there = std::strtod(text.c_str(), &end);
+  if (!text.empty() && *end == '\0' && std::isfinite(there) && range.contains(there)) return there;
+  constexpr std::array kExamples{0.5, 0.4, 1.0, 2.0, 10.0};
+  const auto fits =
+      std::find_if(kExamples.begin(), kExamples.end(), [&](double x) { return range.contains(x); });
+  return fits == kExamples.end() ? kExamples.front() : *fits;
+}
+
+}  // namespace
+
 double TableReader::number_of(const toml::node& node, const Key& key) const {
   const auto found = node.value<double>();
   if (!node.is_number() || !found) {
-    wrong_type(node, key, "a number without unit", fmt::format("{} = 0.5", key.name));
+    wrong_type(node, key, "a number without unit",
+               fmt::format("{} = {}", key.name, number_like(node, key.range)));
   }
   check_range(*found, shown(node), key, node, range_text(key.range));
   return *found;
@@ -311,7 +330,10 @@ const toml::array& TableReader::three(const toml::node& node, const Key& key,
 void TableReader::point(Vec3& value, Dimension dimension, const Key& key) {
   const toml::node* node = find(key);
   if (node == nullptr) return;
-  const toml::array& array = three(*node, key, R"(["0 mm", "0 mm", "10 mm"])");
+  const toml::array& array =
+      three(*node, key,
+            dimension == Dimension::Acceleration ? R"(["0 m/s^2", "0 m/s^2", "-9.81 m/s^2"])"
+                                                 : R"(["0 mm", "0 mm", "10 mm"])");
   for (std::size_t i = 0; i < 3; ++i) value[i] = quantity_of(array[i], dimension, key);
 }
 

@@ -223,6 +223,8 @@ json key_figures(const ReportInput& input) {
           {"mesh_error_confidence", input.curves->mesh_error_confidence},
           {"accuracy", fitting::accuracy_text(*input.library)},
           {"library_bytes", input.library_bytes},
+          {"library_vertices", input.library->positions.size()},
+          {"library_triangles", input.library->triangles.size()},
           {"depth", curves.depth},
           {"lateral_travel", curves.lateral_travel},
           {"tool_shape", curves.tool.shape},

@@ -41,7 +41,7 @@ struct Samples {
   }
 };
 
-/// Of straight presses to a depth, as they are rendered.
+/// Straight presses to a depth, as they are rendered.
 Samples presses(const Library& library, double depth) {
   Samples samples;
   for (const NodeResponse& node : library.responses) {
@@ -56,7 +56,7 @@ Samples presses(const Library& library, double depth) {
   return samples;
 }
 
-/// Of drags at a depth across the soft axis: as far as the depth, or to the last knot.
+/// Drags at a depth across the soft axis: as far as the depth, or to the last knot.
 Samples drags(const Library& library, double depth) {
   Samples samples;
   for (std::size_t v = 0; v < library.responses.size(); ++v) {

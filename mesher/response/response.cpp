@@ -226,6 +226,13 @@ void set_response(Body& body, const NestedSurface& nested, const Marks& constrai
 void check_sites(const Body& body, const Settings& settings, const Surface& boundary) {
   const auto& site = body.response.is_site;
   if (std::find(site.begin(), site.end(), std::uint8_t{1}) != site.end()) return;
+  if (!settings.press.empty())
+    throw Error(
+        ErrorKind::Geometry, settings.source().string(),
+        text("no response vertex is a site: none lies in a [[press]] zone, off the supports "
+             "by the tool radius of ",
+             millimetres(settings.tool_radius)),
+        text("move or enlarge the zones: the body spans ", extent_of(boundary.points)));
   throw Error(
       ErrorKind::Geometry, settings.source().string(),
       text("no response vertex is a site: each is on a support or within the tool radius, ",

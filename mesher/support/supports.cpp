@@ -132,7 +132,7 @@ std::vector<bool> entries_with(const std::string& label, const Surface& skin,
     if (listed++ < kListed) list += (list.empty() ? "" : ", ") + name;
   if (all.size() > kListed) list += text(" or ", all.size() - kListed, " more");
   throw Error(ErrorKind::Configuration, where,
-              text("no face has the name '", label, "', which a support asks for"),
+              text("no face has the name '", label, "', which is asked for"),
               all.empty()
                   ? "name faces by 'g', 'o' or 'usemtl' in an OBJ file, by solids in an STL "
                     "file of text, by colours in a PLY file, or by an integer cell array in a VTK "

@@ -182,6 +182,10 @@ TEST_F(PalpateLoop, ADeviceWithoutNewSamplesLosesItsForceAndTheLoopEnds) {
   settings.record = 10000;
   palpate_loop* loop = nullptr;
   ASSERT_EQ(palpate_loop_start(state_, &device, &settings, &loop), PALPATE_OK);
+  palpate_loop* second = nullptr;
+  EXPECT_EQ(palpate_loop_start(state_, &device, &settings, &second), PALPATE_ERROR_ARGUMENT);
+  EXPECT_EQ(second, nullptr);
+  EXPECT_NE(std::string(palpate_last_error()).find("belongs to a loop"), std::string::npos);
   for (int i = 0; i < 60000 && palpate_loop_running(loop); ++i) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }

@@ -40,7 +40,7 @@ function keyFigures(data, nodes) {
     tile('Stiffness', range, `secant, over ${units.length(key.depth)}; softest to stiffest node`, 'stiffness-range'),
     guaranteed(data.certificate),
     tile('Library', key.library_bytes ? units.bytes(key.library_bytes) : '\u2013',
-      `${units.count(data.body.vertices)} nodes, ${units.count(data.body.triangles)} triangles`, 'library-bytes'));
+      `${units.count(key.library_vertices)} nodes, ${units.count(key.library_triangles)} triangles`, 'library-bytes'));
 }
 
 /** Keys whose values are no plain words. */
