@@ -54,7 +54,8 @@ int write_first_case(const InitOptions& options) {
   for (const std::string& remark : first.remarks) say("  {}", remark);
   const std::string name = target.string();
   const bool plain = name.find(' ') == std::string::npos;
-  say("init: {}; next: palpate build {}", name, plain ? name : '"' + name + '"');
+  say("init: {}; next: {}palpate build {}", name,
+      first.is_refused ? "change it as said above, then " : "", plain ? name : '"' + name + '"');
   return kExitDone;
 }
 

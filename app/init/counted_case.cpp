@@ -19,6 +19,10 @@ namespace {
 constexpr int kMostTrials = 5;
 constexpr double kNearEnough = 0.1;  ///< of the wanted number of sites
 constexpr double kWorthSaying = 0.3;
+/// More sites where the mesher refuses a body, and how often: its elements may be too large for a
+/// thin part or a bend.
+constexpr double kFinerWhereRefused = 1.5;
+constexpr int kMostFiner = 2;
 
 double distance(std::int64_t sites, int wanted) {
   return std::abs(static_cast<double>(sites) / wanted - 1);
@@ -47,7 +51,8 @@ void count_sites(const CaseOf& made, CountedCase& counted) {
 }
 
 CountedCase counted_case(const CaseOf& made, int wanted) {
-  CountedCase best;
+  CountedCase best, refused;
+  int refusals = 0;
   double asked = wanted, last_spacing = 0;
   double fewer = 0, more = 0;  // what was asked for where that many were made
   for (int i = 0; i < kMostTrials; ++i) {
@@ -61,8 +66,11 @@ CountedCase counted_case(const CaseOf& made, int wanted) {
     } catch (const Error& error) {
       if (error.kind() == ErrorKind::Configuration) throw;
       if (best.body) break;
-      trial.refusal = error.problem();
-      return trial;
+      trial.refusal = fmt::format("{}; {}", error.problem(), error.remedy());
+      if (refusals == 0) refused = std::move(trial);
+      if (++refusals > kMostFiner) break;
+      asked *= kFinerWhereRefused;
+      continue;
     }
     const std::int64_t made_sites = std::max<std::int64_t>(1, *trial.sizes.sites);
     (made_sites < wanted ? fewer : more) = asked;
@@ -72,7 +80,7 @@ CountedCase counted_case(const CaseOf& made, int wanted) {
       best = std::move(trial);
     if (distance(*best.sizes.sites, wanted) <= kNearEnough) break;
   }
-  return best;
+  return best.body ? std::move(best) : std::move(refused);
 }
 
 std::string remark_on_sites(const FirstSizes& sizes, int wanted) {

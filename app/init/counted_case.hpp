@@ -38,8 +38,8 @@ void count_sites(const CaseOf& made, CountedCase& counted);
 
 /// Patches that make about `wanted` sites as the mesher counts them: the area alone does not say
 /// how many, because Delaunay refinement divides what is curved, and because supports and cavities
-/// take sites away. Meshes the body a few times. Where the mesher refuses it, the sizes follow from
-/// the area.
+/// take sites away. Meshes the body a few times. Where the mesher refuses it, smaller patches are
+/// tried; where it refuses these too, the sizes follow from the area.
 /// @throws Error(Configuration) where the case itself would be refused
 CountedCase counted_case(const CaseOf& made, int wanted);
 

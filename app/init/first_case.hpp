@@ -15,6 +15,7 @@ namespace palpate::app {
 struct FirstCase {
   std::string toml;
   std::vector<std::string> remarks;  ///< for the terminal: unit, base, sizes, what to check
+  bool is_refused = false;           ///< by the mesher, with these sizes
 };
 
 /// Where the unit is from, and what it makes of the size.

@@ -138,6 +138,7 @@ FirstCase timely_case(const CaseOf& made, const FirstWishes& wishes) {
   const FirstSizes& sizes = search.counted().sizes;
   FirstCase first = made.with(sizes);
   if (!search.counted().body) {
+    first.is_refused = true;
     first.remarks.push_back("`palpate mesh` refuses the body: " + search.counted().refusal);
     return first;
   }
