@@ -27,13 +27,16 @@ struct Samples {
   std::vector<double> force;
   std::vector<double> slope;
 
-  /// Those of a force over a deflection.
-  template <class Force>
-  void add(const Force& at, double deflection) {
+  /// A factor of a curve and what lean and soft axis add to it, over a deflection.
+  template <class Added>
+  void add(double factor, const runtime::CompiledCurve& curve, const Added& added,
+           double deflection) {
     constexpr double kDifference = 1e-3;
     const double step = kDifference * deflection;
-    force.push_back(at(deflection));
-    slope.push_back((at(deflection + step) - at(deflection - step)) / (2 * step));
+    const runtime::CurveValue own = curve.evaluate(deflection);
+    force.push_back(factor * own.force + added(deflection));
+    slope.push_back(factor * own.slope +
+                    (added(deflection + step) - added(deflection - step)) / (2 * step));
   }
   void add_hole() {
     force.push_back(std::numeric_limits<double>::quiet_NaN());
@@ -51,7 +54,8 @@ Samples presses(const Library& library, double depth) {
     }
     const runtime::CompiledCurve g(node.normal);
     const fitting::LeaningResponse leaning(node, library.kind);
-    samples.add([&](double z) { return g.force(z) + leaning.normal_force(z); }, depth);
+    samples.add(
+        1, g, [&](double z) { return leaning.normal_force(z); }, depth);
   }
   return samples;
 }
@@ -69,8 +73,13 @@ Samples drags(const Library& library, double depth) {
     const Vec3 direction =
         norm(across) > 0 ? (1 / norm(across)) * across : tangent_frame(library.inward[v])[0];
     const fitting::LeaningResponse leaning(node, library.kind);
-    samples.add([&](double d) { return leaning.drag_force(depth, d, direction); },
-                std::min(depth, static_cast<double>(node.lateral.knot.back())));
+    const runtime::CompiledCurve h(node.lateral), w = fitting::coupling_of(node, library.kind);
+    const double weight = w.pieces().empty() ? 1 : w.evaluate(depth).force;
+    const bool straight = norm(vec3_of(node.lean)) == 0 && norm(vec3_of(node.soft_axis)) == 0;
+    const auto added = [&](double d) {
+      return straight ? 0 : leaning.drag_force(depth, d, direction) - weight * h.force(d);
+    };
+    samples.add(weight, h, added, std::min(depth, static_cast<double>(node.lateral.knot.back())));
   }
   return samples;
 }

@@ -127,8 +127,9 @@ class VtkHdf(unittest.TestCase):
                 continue
             knot = response[f"{which}_knot"][first:last].astype(float)
             s = response[f"{which}_slope"][first:last].astype(float)
-            corners = np.append(knot[knot < DEPTH], DEPTH)
-            slope.append(np.interp(DEPTH, knot, s))
+            end = DEPTH if which == "normal" else min(DEPTH, knot[-1])
+            corners = np.append(knot[knot < end], end)
+            slope.append(np.interp(end, knot, s))
             force.append(np.trapz(np.interp(corners, knot, s), corners))
         return np.array(force), np.array(slope)
 

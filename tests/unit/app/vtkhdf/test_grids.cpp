@@ -61,6 +61,22 @@ TEST(VtkGrids, TheLibraryHasNoForceAtHoles) {
   EXPECT_THROW(library_grid(library, std::numeric_limits<double>::infinity()), Error);
 }
 
+/// Coupled responses grow with depth: a drag at 1 mm has w(1 mm) = 0.5 + 0.1 times f^r.
+TEST(VtkGrids, TheLibraryHasTheForcesThatAreRendered) {
+  Library library = samples::library(2);
+  const Grid decoupled = library_grid(library, 0.001);
+  library.kind = ResponseKind::Coupled;
+  for (NodeResponse& response : library.responses)
+    response.coupling = {0.5F, {{0, 0.01F}, {100, 100}}};
+  const Grid coupled = library_grid(library, 0.001);
+  const auto &before = values<double>(decoupled.point_data, "lateral_force"),
+             &now = values<double>(coupled.point_data, "lateral_force");
+  for (std::size_t v = 0; v < now.size(); ++v) {
+    if (library.responses[v].status == ResponseStatus::Hole) continue;
+    EXPECT_NEAR(now[v], 0.6 * before[v], 1e-6 * before[v]) << v;
+  }
+}
+
 TEST(VtkHdf, RejectsGridsThatAreInconsistent) {
   const samples::TemporaryFolder folder;
   Grid grid = body_grid(samples::body(1));
