@@ -114,7 +114,7 @@ std::string PathDriver::fault_of(const CurveSample& sample, const Displacement& 
   const PartTimer timer(Part::BodyPasses);
   if (const auto touch = problem_.contact.touch_of_support(u))
     return "the tool touches a support at " + point_text(*touch) +
-           ": nothing soft answers from there on";
+           ", where the response is no longer that of soft tissue";
   if (sample.penetration > kLargestPenetration * problem_.tool_radius)
     return "the tool cuts into the surface, by " + length_text(sample.penetration) +
            ", at which what it meets is no longer soft: a support, or a region much stiffer than "

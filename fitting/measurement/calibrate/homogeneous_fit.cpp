@@ -64,9 +64,10 @@ void warn_of_units(const std::vector<HomogeneousTest>& tests, HomogeneousFit& fi
                                          number_text(most) + ": check the unit of its strain");
   }
   if (fit.shear_modulus < kSoftest || fit.shear_modulus > kStiffest)
-    fit.calibration.warnings.push_back("a shear modulus of " + number_text(fit.shear_modulus) +
-                                       " Pa is that of nothing soft: check the units of force, "
-                                       "area and stress");
+    fit.calibration.warnings.push_back(
+        "a shear modulus of " + number_text(fit.shear_modulus) +
+        " Pa is far from that of any soft tissue: check the units of force, "
+        "area and stress");
 }
 
 void warn_of_instability(const std::vector<HomogeneousTest>& tests, HomogeneousFit& fit) {

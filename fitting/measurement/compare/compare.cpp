@@ -61,8 +61,6 @@ ComparedCurve curve_along(const ComparedCurve& path, const RenderedVertex& verte
 bool same_path(const ComparedCurve& a, const ComparedCurve& b, const CompareSettings& settings) {
   if (a.kind != b.kind) return false;
   if (a.kind == PathKind::Normal) return true;
-  const bool any = norm(a.direction) == 0 || norm(b.direction) == 0;
-  if (any) return true;
   const double deeper = std::max(a.lateral_depth, b.lateral_depth);
   if (std::abs(a.lateral_depth - b.lateral_depth) > settings.depth_tolerance * deeper) return false;
   return dot(a.direction, b.direction) > std::cos(settings.direction_tolerance);

@@ -131,7 +131,7 @@ MixedRow most_numbers(const std::vector<Line>& lines) {
            "the table has " + count_text(longest.rows(), "row") + " of numbers", needed);
   const MixedRow row = most_numbers(lines);
   if (row.numbers > 0)
-    refuse(at_line(file, *row.line), "'" + row.other + "' beside the numbers is not one",
+    refuse(at_line(file, *row.line), "'" + row.other + "' is not a number",
            needed + "; remove columns of text");
   refuse(file, "no table of numbers in it", needed);
 }

@@ -191,8 +191,7 @@ TEST(Csv, NeverSkipsARow) {
               HasSubstr("a.csv:5: field 2 is empty"));
   EXPECT_THAT(refusal("nothing here\n"), HasSubstr("no table of numbers"));
   EXPECT_THAT(refusal("a,b\n1,2\n3,4\n"), HasSubstr(":2: the table has 2 rows of numbers"));
-  EXPECT_THAT(refusal("a,b,c\n1,2,S0\n3,4,S0\n5,6,S0\n"),
-              HasSubstr(":2: 'S0' beside the numbers is not one"));
+  EXPECT_THAT(refusal("a,b,c\n1,2,S0\n3,4,S0\n5,6,S0\n"), HasSubstr(":2: 'S0' is not a number"));
   EXPECT_THAT(refusal(""), HasSubstr("no table of numbers"));
 }
 
