@@ -29,15 +29,21 @@ double number_of(const nlohmann::ordered_json& value) {
   return value.is_null() ? kUnknown : value.get<double>();
 }
 
+/// A record, or the site of a batch.
+std::string name_of(const nlohmann::ordered_json& record) {
+  const auto file = record["file"].get<std::string>();
+  return record.contains("site") ? file + ", " + record["site"].get<std::string>() : file;
+}
+
 /// Each record that was taken or refused, where there are several.
 void say_records(const Import& result) {
   const auto& records = result.account["records"];
   if (records.size() + result.account["refused"].size() < 2) return;
   for (const auto& record : records)
-    say("  imported {}: site {}", record["file"].get<std::string>(), record["vertex"].get<int>());
+    say("  imported {}: {} {}", name_of(record), record.contains("site") ? "vertex" : "site",
+        record["vertex"].get<int>());
   for (const auto& refused : result.account["refused"])
-    say("  refused {}: {}", refused["file"].get<std::string>(),
-        refused["reason"].get<std::string>());
+    say("  refused {}: {}", name_of(refused), refused["reason"].get<std::string>());
 }
 
 /// Which press of a record that has several was taken.
@@ -83,12 +89,27 @@ fs::path write_patch(const fs::path& sidecar, const fs::path& out, const std::st
   return file;
 }
 
+/// The records with the body of the options, or with the surface that they make. A surface without
+/// curves is of no use: none is left where the records are refused.
+Import import_on_body(const ImportOptions& options, const ImportRequest& request,
+                      const std::string& tool, const fs::path& out) {
+  if (!options.body.empty() || !makes_body(read_sidecar(request.sidecar, tool)))
+    return import_measurement(request.sidecar, options.body, request.records, tool);
+  const bool is_new = !fs::exists(out / "body.h5");
+  const fs::path body = write_patch(request.sidecar, out, tool);
+  try {
+    return import_measurement(request.sidecar, body, request.records, tool);
+  } catch (...) {
+    std::error_code ignored;
+    if (is_new) fs::remove(body, ignored);
+    throw;
+  }
+}
+
 /// The records of one tool. @return how many were refused.
 int import_tool(const ImportOptions& options, const ImportRequest& request, const std::string& tool,
                 const fs::path& out) {
-  const bool has_body = !options.body.empty() || !makes_body(read_sidecar(request.sidecar, tool));
-  const fs::path body = has_body ? fs::path(options.body) : write_patch(request.sidecar, out, tool);
-  const Import result = import_measurement(request.sidecar, body, request.records, tool);
+  const Import result = import_on_body(options, request, tool, out);
   prepare_output(out);
   if (!result.curves.sites.empty()) write_curves(out / "curves.h5", result.curves);
   if (!result.histories.records.empty()) write_histories(result.histories, request.sidecar, out);

@@ -100,20 +100,22 @@ class Importer {
   }
 
  private:
-  void put_off(const std::string& what, const Error& error) {
+  /// @param site  of a batch; empty: the whole record.
+  void put_off(const std::string& what, const Error& error, const std::string& site = {}) {
     if (!first_refusal_) first_refusal_ = error;
     refused_.push_back({{"file", what}, {"reason", error.what()}});
+    if (!site.empty()) refused_.back()["site"] = site;
   }
 
-  /// A record that is wrong does not take the others with it.
+  /// A record that is wrong, or a site of a batch, does not take the others with it.
   template <class Work>
-  bool attempt(const std::string& what, Work work) {
+  bool attempt(const std::string& what, Work work, const std::string& site = {}) {
     try {
       work();
       return true;
     } catch (const Error& error) {
       if (error.kind() != ErrorKind::Configuration) throw;
-      put_off(what, error);
+      put_off(what, error, site);
       return false;
     }
   }
@@ -157,8 +159,7 @@ class Importer {
     checks_.check_depth(reader_.path_of(where).string(), curve);
     checks_.check_stiffness(where, curve);
     checks_.check_drift(where, curve);
-    const RelaxationSeries& series = s_.path.relaxation;
-    const m::PressCurve press = series.empty() ? curve : m::before_relaxing(curve, series, where);
+    const m::PressCurve press = reader_.before_relaxing(curve, where);
     std::vector<m::PressCurve>& presses = records_at(place.vertex).presses;
     check_new(presses, press, reader_.path_of(where).string());
     presses.push_back(press);
@@ -238,19 +239,25 @@ class Importer {
 
   void read_batch(const BatchFileSection& batch) {
     const m::CsvTable table = reader_.table(batch);
-    for (const m::BatchSite& site : reader_.batch(batch, table)) {
-      const std::string where = batch.file + ", " + site.name;
-      const m::NearestSite near =
-          m::nearest_site(*body_, site.contact, s_.placement.tolerance, where);
-      take(batch.file, where, table, {near.vertex, near.distance}, site.press);
-      checks_.check_lateral(where, site);
-      Json& record = records_.back();
-      record["site"] = site.name;
-      record["touch_m"] = site.contact;
-      record["outward"] = site.outward;
-      record["lateral_fraction"] = site.lateral_fraction;
-      record["sideways_m"] = site.sideways;
-    }
+    const m::Batch read = reader_.batch(batch, table);
+    for (const m::RefusedSite& site : read.refused) put_off(batch.file, site.reason, site.name);
+    for (const m::BatchSite& site : read.sites)
+      attempt(
+          batch.file, [&] { take_site(batch.file, table, site); }, site.name);
+  }
+
+  void take_site(const std::string& file, const m::CsvTable& table, const m::BatchSite& site) {
+    const std::string where = file + ", " + site.name;
+    const m::NearestSite near =
+        m::nearest_site(*body_, site.contact, s_.placement.tolerance, where);
+    take(file, where, table, {near.vertex, near.distance}, site.press);
+    checks_.check_lateral(where, site);
+    Json& record = records_.back();
+    record["site"] = site.name;
+    record["touch_m"] = site.contact;
+    record["outward"] = site.outward;
+    record["lateral_fraction"] = site.lateral_fraction;
+    record["sideways_m"] = site.sideways;
   }
 
   Curves curves() {
@@ -295,6 +302,7 @@ class Importer {
                                                      {"instrument", s_.instrument},
                                                      {"date", s_.date},
                                                      {"records", std::to_string(records_.size())},
+                                                     {"refused", std::to_string(refused_.size())},
                                                      {"lateral", lateral_fact()}}));
     return provenance;
   }

@@ -6,7 +6,9 @@
 #include <cmath>
 #include <utility>
 
+#include "app/measured/site_records.hpp"
 #include "fitting/measurement/records/table_file.hpp"
+#include "fitting/measurement/relaxation/before_relaxing.hpp"
 #include "format/number_text.hpp"
 
 namespace palpate::app {
@@ -224,8 +226,13 @@ std::vector<Vec3> RecordReader::normals(const m::CsvTable& table) const {
   return normals;
 }
 
-std::vector<m::BatchSite> RecordReader::batch(const BatchFileSection& section,
-                                              const m::CsvTable& table) const {
+m::PressCurve RecordReader::before_relaxing(const m::PressCurve& press,
+                                            const std::string& where) const {
+  const RelaxationSeries& series = sidecar_.path.relaxation;
+  return series.empty() ? press : m::before_relaxing(press, series, where);
+}
+
+m::Batch RecordReader::batch(const BatchFileSection& section, const m::CsvTable& table) const {
   const ColumnsSection& c = sidecar_.columns;
   m::BatchLog batch;
   batch.name = path_of(section.file).string();
@@ -236,7 +243,10 @@ std::vector<m::BatchSite> RecordReader::batch(const BatchFileSection& section,
   batch.outward = normals(table);
   batch.contact = positions(table, {c.contact_x, c.contact_y, c.contact_z});
   batch.position_to_skin = sidecar_.tool.reference == "centre" ? sidecar_.tool.radius : 0;
-  return m::split_batch(batch, {press_settings(1), section.leave_out});
+  const auto makes_a_curve = [&](const m::BatchSite& site, const std::string& where) {
+    site_curves({-1, -site.outward, {before_relaxing(site.press, where)}, {}, where}, sidecar_);
+  };
+  return m::split_batch(batch, {press_settings(1), section.leave_out, makes_a_curve});
 }
 
 }  // namespace palpate::app

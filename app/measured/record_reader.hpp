@@ -40,9 +40,12 @@ class RecordReader {
   measured::History history(const HistoryFileSection& section) const;
   measured::RobotLog robot_log(const RobotFileSection& section,
                                const measured::CsvTable& table) const;
-  /// The presses of a batch. @throws Error as measured::split_batch.
-  std::vector<measured::BatchSite> batch(const BatchFileSection& section,
-                                         const measured::CsvTable& table) const;
+  /// The presses of a batch. A site whose press makes no curve is refused.
+  /// @throws Error as measured::column_in_si and measured::split_batch.
+  measured::Batch batch(const BatchFileSection& section, const measured::CsvTable& table) const;
+  /// The press as the tissue would answer before it relaxes, where the sidecar has a series.
+  measured::PressCurve before_relaxing(const measured::PressCurve& press,
+                                       const std::string& where) const;
 
   measured::PressSettings press_settings(int cycle) const;
   /// How the columns became displacement and force; empty where they are those.

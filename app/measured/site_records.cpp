@@ -15,7 +15,7 @@ namespace {
 namespace m = palpate::measured;
 
 std::string where_of(const SiteRecords& records) {
-  return fmt::format("site at vertex {}", records.vertex);
+  return records.name.empty() ? fmt::format("site at vertex {}", records.vertex) : records.name;
 }
 
 /// The one press of a site, sample by sample.

@@ -2,6 +2,7 @@
 // What was measured at one site, as paths of a curve.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "app/measured/sidecar.hpp"
@@ -17,6 +18,7 @@ struct SiteRecords {
   Vec3 inward{};  ///< unit, along the presses
   std::vector<measured::PressCurve> presses;
   std::vector<measured::DragCurve> drags;
+  std::string name;  ///< for messages; empty: that of the vertex
 };
 
 /// The mean press of a site, and its drags or the lateral path that is made for want of them.

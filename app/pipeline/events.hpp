@@ -101,9 +101,13 @@ struct SamplingFinished {
 struct SiteCounts {
   std::size_t complete = 0, partial = 0, failed = 0;
   std::size_t without_response = 0;  ///< of partial and failed: their curves cannot be fitted
-  bool all_complete() const { return partial == 0 && failed == 0; }
-  /// Whether a library of these sites is usable: at most a twentieth of them is without a response.
-  bool usable() const { return 20 * without_response <= complete + partial + failed; }
+  std::size_t refused = 0;           ///< records, or sites of them, that are not in the curves
+  bool all_complete() const { return partial == 0 && failed == 0 && refused == 0; }
+  /// Whether a library of these sites is usable: at most a twentieth of them is without a response,
+  /// and nothing that was measured is missing without the user's consent.
+  bool usable() const {
+    return refused == 0 && 20 * without_response <= complete + partial + failed;
+  }
 };
 
 struct CampaignFinished {

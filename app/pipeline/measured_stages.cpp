@@ -2,6 +2,7 @@
 #include "app/pipeline/measured_stages.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <numbers>
 
@@ -27,6 +28,9 @@ double degrees(double angle) {
 void run_measured_surface(const Workspace& space, const EventSink& emit) {
   PatchBody patch = patch_body(records_of(space));
   for (const std::string& warning : patch.warnings) emit(Warning{"mesh", warning});
+  if (!patch.refused.empty())
+    emit(Warning{"mesh", fmt::format("not in the surface, as `precompute` explains: {}",
+                                     fmt::join(patch.refused, ", "))});
   emit(LogLine{"mesh",
                fmt::format("surface of {}, {} apart; facets up to {:.0f} degrees off "
                            "the mean normal, normals up to {:.0f} degrees off the facets",

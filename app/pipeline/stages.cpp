@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <string>
@@ -103,6 +104,16 @@ void emit_log(const std::string& stage, std::string_view text, const EventSink& 
   emit(Warning{stage, std::string(text)});
 }
 
+/// What an import left out, as its step of the provenance states.
+std::size_t refused_records(const Provenance& provenance) {
+  std::size_t refused = 0;
+  for (const ProvenanceStep& step : provenance.steps)
+    for (const auto& [key, value] : step.facts)
+      if (step.stage == "import" && key == "refused")
+        std::from_chars(value.data(), value.data() + value.size(), refused);
+  return refused;
+}
+
 }  // namespace
 
 void refuse_body_of_another_case(const Workspace& space) {
@@ -135,6 +146,7 @@ SiteCounts count_sites(const Curves& curves) {
         break;
     }
   }
+  counts.refused = refused_records(curves.provenance);
   return counts;
 }
 

@@ -152,17 +152,95 @@ class RobotBatch(unittest.TestCase):
             self.assertEqual(result.returncode, 2, result.stdout + result.stderr)
             self.assertIn("inside", result.stderr)
 
-    # What is refused: changed copies of the records.
+    # Changed copies of the records.
+
+    @staticmethod
+    def write_changed(folder, change, sidecar=lambda text: text):
+        lines = (SOURCE / "data/measured/liver-patch/probing.csv").read_text().splitlines()
+        rows = [line.split(",") for line in lines[1:]]
+        rows = change(rows) or rows
+        (folder / "probing.csv").write_text("\n".join([lines[0], *(",".join(row) for row in rows)]) + "\n")
+        text = (SOURCE / "data/measured/liver-patch/sidecar.toml").read_text()
+        (folder / "sidecar.toml").write_text(sidecar(text))
+
+    @staticmethod
+    def forces_by_contact(out):
+        """Samples of each site by its contact point, which names it whatever its vertex is."""
+        with h5py.File(out / "body.h5", "r") as file:
+            nodes = file["nodes"][()]
+        found = {}
+        with h5py.File(out / "curves.h5", "r") as file:
+            for row, vertex in enumerate(file["site/vertex"][()]):
+                path = file["site/first_path"][row]
+                first, count = file["path/first_sample"][path], file["path/sample_count"][path]
+                found[tuple(nodes[vertex])] = file["sample/force"][first:first + count]
+        return found
+
+    def test_a_site_that_cannot_be_used_does_not_take_the_others_with_it(self):
+        def three_bad(rows):
+            for row in rows:
+                if row[0] == "31":  # a normal into the body
+                    row[5:8] = [str(-float(value)) for value in row[5:8]]
+                if row[0] == "40" and row[1] == "3":  # a tool that goes back, where every sample is kept
+                    row[8:11] = next(r for r in rows if r[:2] == ["40", "1"])[8:11]
+                if row[0] == "7":  # a force that pulls
+                    row[11:14] = [str(-float(value)) for value in row[11:14]]
+
+        with tempfile.TemporaryDirectory() as name:
+            folder, out = Path(name), Path(name) / "out"
+            self.write_changed(folder, three_bad)
+            arguments = ["import", folder / "sidecar.toml", "--out", out]
+            result = command.palpate(*arguments)
+            self.assertEqual(result.returncode, 4, result.stdout + result.stderr)
+            self.assertRegex(result.stdout, r"refused probing.csv, site 7: \S*probing.csv, site 7: the force points out")
+            self.assertRegex(result.stdout, r"refused probing.csv, site 31: .* moves out of the body along its normal")
+            self.assertRegex(result.stdout, r"refused probing.csv, site 40: .* depth does not increase")
+            self.assertIn("import: 3 refused", result.stdout)
+            account = json.loads((out / "import.json").read_text())
+            self.assertEqual([r["site"] for r in account["refused"]], ["site 7", "site 31", "site 40"])
+            self.assertEqual(len(account["records"]), 60)
+            whole, rest = self.forces_by_contact(self.out), self.forces_by_contact(out)
+            self.assertEqual(len(rest), 60)
+            for contact, forces in rest.items():
+                np.testing.assert_array_equal(forces, whole[contact])
+            self.assertEqual(command.palpate(*arguments, "--allow-refused").returncode, 0)
+
+            # The case is built of the others, and says so as long as nobody left the three out.
+            case = self.case.read_text().replace("../measured/liver-patch/", "")
+            (folder / "case.toml").write_text(case.replace("../devices", str(SOURCE / "data/devices")))
+            for _ in range(2):  # also where everything is up to date
+                built = command.palpate("build", folder / "case.toml", "--out", folder / "built")
+                self.assertEqual(built.returncode, 4, built.stdout + built.stderr)
+            text = (folder / "sidecar.toml").read_text()
+            (folder / "sidecar.toml").write_text(text + 'leave_out = ["7", "31", "40"]\n')
+            built = command.palpate("build", folder / "case.toml", "--out", folder / "built")
+            self.assertEqual(built.returncode, 0, built.stdout + built.stderr)
+
+    def test_what_is_wrong_with_the_whole_batch_writes_nothing(self):
+        def unchanged(rows):
+            return rows
+
+        def inverted(rows):
+            for row in rows:
+                row[11:14] = [str(-float(value)) for value in row[11:14]]
+
+        for change, sidecar, wanted in (
+            (unchanged, lambda text: text.replace('fz = "fz"', 'fz = "fzz"'), "no column is named 'fzz'"),
+            (unchanged, lambda text: text.replace('[columns]', '[columns]\nforce_unit = "kN"'), "kN"),
+            (inverted, lambda text: text, "none of the 63 sites can be used, this is the first; check placement.force_is"),
+        ):
+            with tempfile.TemporaryDirectory() as name:
+                folder = Path(name)
+                self.write_changed(folder, change, sidecar)
+                result = command.palpate("import", folder / "sidecar.toml", "--out", folder / "out")
+                self.assertEqual(result.returncode, 2, result.stdout + result.stderr)
+                self.assertIn(wanted, result.stderr)
+                self.assertFalse((folder / "out").exists() and any((folder / "out").iterdir()))
 
     def refused(self, change, wanted):
         with tempfile.TemporaryDirectory() as name:
             folder = Path(name)
-            lines = (SOURCE / "data/measured/liver-patch/probing.csv").read_text().splitlines()
-            rows = [line.split(",") for line in lines[1:]]
-            rows = change(rows) or rows
-            (folder / "probing.csv").write_text("\n".join([lines[0], *(",".join(row) for row in rows)]) + "\n")
-            sidecar = (SOURCE / "data/measured/liver-patch/sidecar.toml").read_text()
-            (folder / "sidecar.toml").write_text(sidecar)
+            self.write_changed(folder, change)
             result = command.palpate("import", folder / "sidecar.toml", "--out", folder / "out")
             self.assertEqual(result.returncode, 2, result.stdout + result.stderr)
             self.assertRegex(result.stderr, wanted)
@@ -175,24 +253,19 @@ class RobotBatch(unittest.TestCase):
             copy = [["63", *row[1:]] for row in rows if row[0] == "20"]
             return rows + copy
 
-        def opposed(rows):
-            for row in rows:
-                if row[0] == "31":
-                    row[5:8] = [str(-float(value)) for value in row[5:8]]
-
         def not_a_number(rows):
             rows[100][11] = "nan"
 
-        def sideways(rows):
+        def far(rows):
             for row in rows:
                 if row[0] == "31":
-                    row[5:8] = ["0", "1", "0"]
+                    row[2] = str(float(row[2]) + 500)
+                    row[8] = str(float(row[8]) + 500)
 
         self.refused(one_row, r"9 sites lie on one line")
         self.refused(same_place, r"site 20 and site 63 are .* apart")
-        self.refused(opposed, r"site 31.*out of the body along its normal")
         self.refused(not_a_number, r"probing.csv:102.*nan|'nan'")
-        self.refused(sideways, r"site 31")
+        self.refused(far, r"site 31")
 
 
 if __name__ == "__main__":

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include "fitting/measurement/records/repeats.hpp"
 #include "format/error.hpp"
@@ -17,8 +18,18 @@ constexpr double kSamePoint = 1e-5;   ///< m, of the contact point within a site
 
 using Rows = std::vector<std::size_t>;
 
-std::string site_name(double number) {
-  return "site " + std::to_string(static_cast<long>(number));
+std::string site_name(long number) {
+  return "site " + std::to_string(number);
+}
+
+/// What no site fulfils is hardly the fault of a site.
+[[noreturn]] void refuse_all(const std::vector<RefusedSite>& refused) {
+  const Error& first = refused.front().reason;
+  if (refused.size() == 1) throw first;
+  refuse(first.where(),
+         first.problem() + "; none of the " + std::to_string(refused.size()) +
+             " sites can be used, this is the first",
+         first.remedy());
 }
 
 void check_columns(const BatchLog& log) {
@@ -132,13 +143,23 @@ BatchSite site_of(const BatchLog& log, const Rows& rows, const std::string& name
 
 }  // namespace
 
-std::vector<BatchSite> split_batch(const BatchLog& log, const BatchSettings& settings) {
+Batch split_batch(const BatchLog& log, const BatchSettings& settings) {
   check_columns(log);
   std::map<long, Rows> sites = rows_by_site(log);
   leave_out(sites, log, settings.leave_out);
-  std::vector<BatchSite> batch;
-  for (const auto& [number, rows] : sites)
-    batch.push_back(site_of(log, rows, site_name(static_cast<double>(number)), settings));
+  Batch batch;
+  for (const auto& [number, rows] : sites) {
+    const std::string name = site_name(number);
+    try {
+      BatchSite site = site_of(log, rows, name, settings);
+      if (settings.check) settings.check(site, log.name + ", " + name);
+      batch.sites.push_back(std::move(site));
+    } catch (const Error& error) {
+      if (error.kind() != ErrorKind::Configuration) throw;
+      batch.refused.push_back({name, error});
+    }
+  }
+  if (batch.sites.empty()) refuse_all(batch.refused);
   return batch;
 }
 

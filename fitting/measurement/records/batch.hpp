@@ -3,11 +3,13 @@
 // in which a column says the site of each row.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "fitting/measurement/records/press.hpp"
 #include "format/curves.hpp"
+#include "format/error.hpp"
 #include "format/vec3.hpp"
 
 namespace palpate::measured {
@@ -24,9 +26,14 @@ struct BatchLog {
   double position_to_skin = 0;  ///< m, from the logged point along the press to the tool's tip
 };
 
+struct BatchSite;
+
 struct BatchSettings {
   PressSettings press;                 ///< `contact` counts from BatchLog::contact
   std::vector<std::string> leave_out;  ///< numbers of sites
+  /// What else a site has to fulfil, given its name for messages: throws Error(Configuration) where
+  /// it does not. May be empty.
+  std::function<void(const BatchSite&, const std::string&)> check;
 };
 
 /// One press of a batch.
@@ -39,13 +46,27 @@ struct BatchSite {
   double sideways = 0;          ///< m, largest travel across the normal
 };
 
+/// A site that cannot be used, and why.
+struct RefusedSite {
+  std::string name;  ///< "site 12"
+  Error reason;      ///< its `where` names the record and the site
+};
+
+struct Batch {
+  std::vector<BatchSite> sites;  ///< never empty
+  std::vector<RefusedSite> refused;
+};
+
 /// The presses in order of their sites. The travel counts from the contact point against the
 /// normal, the force is its part along the travel; what is lateral of both is reported.
-/// @throws Error(Configuration), naming the site: as analyse_press; a site that is no whole number,
-///   a value that is not finite, a normal or contact point that changes within a site, a normal
-///   that is no unit vector, a tool that moves out of the body along its normal, a force that
-///   pulls, a site of leave_out that is not there, no site at all.
-std::vector<BatchSite> split_batch(const BatchLog& log, const BatchSettings& settings);
+///
+/// A site is refused by itself: as analyse_press and settings.check; a value that is not finite, a
+/// normal or contact point that changes within a site, a normal that is no unit vector, a tool that
+/// moves out of the body along its normal, a force that pulls.
+/// @throws Error(Configuration) for what is wrong with the whole batch: columns of unequal length,
+///   a row whose site is no whole number, a site of leave_out that is not there, no site at all, or
+///   none that can be used; then with the reason of the first.
+Batch split_batch(const BatchLog& log, const BatchSettings& settings);
 
 /// What the records do not say about themselves.
 struct RecordedPathSettings {

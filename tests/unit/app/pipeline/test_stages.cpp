@@ -39,6 +39,17 @@ TEST(Stages, CountSitesByStatus) {
   EXPECT_FALSE((SiteCounts{18, 0, 1, 1}.usable()));
 }
 
+TEST(Stages, CountTheRecordsThatAnImportLeftOut) {
+  Curves curves = samples::curves(1);
+  EXPECT_EQ(count_sites(curves).refused, 0U);
+  ProvenanceStep import = curves.provenance.steps.front();
+  import.stage = "import";
+  import.facts = {{"records", "61"}, { "refused", "2" }};
+  curves.provenance.steps.push_back(import);
+  EXPECT_EQ(count_sites(curves).refused, 2U);
+  EXPECT_EQ(exit_code_of(SiteCounts{61, 0, 0, 0, 2}, false), kExitSomeSitesFailed);
+}
+
 TEST(Stages, AUsableLibrarySucceedsUnlessTheCallerIsStrict) {
   const SiteCounts all{238, 0, 0, 0}, two_missing{236, 2, 0, 2}, many_missing{200, 0, 38, 38};
   EXPECT_EQ(exit_code_of(all, true), kExitDone);

@@ -62,14 +62,33 @@ BatchSettings settings() {
   return settings;
 }
 
-void expect_batch_refused(const BatchLog& log, const std::string& problem,
-                          const std::string& where = "site 6",
+void expect_batch_refused(const BatchLog& log, const std::string& problem, const std::string& where,
                           const BatchSettings& with = settings()) {
   expect_refusal([&] { split_batch(log, with); }, ErrorKind::Configuration, where, problem);
 }
 
+/// Site 6 is refused, and the others are as they are without it.
+void expect_site_refused(const BatchLog& log, const std::string& problem,
+                         const BatchSettings& with = settings()) {
+  BatchSettings without = settings();
+  without.leave_out = {"6"};
+  const std::vector<BatchSite> others = split_batch(log_of(), without).sites;
+  const Batch batch = split_batch(log, with);
+  ASSERT_EQ(batch.refused.size(), 1U) << problem;
+  EXPECT_EQ(batch.refused[0].name, "site 6");
+  expect_refusal([&] { throw batch.refused[0].reason; }, ErrorKind::Configuration,
+                 "robot.csv, site 6", problem);
+  ASSERT_EQ(batch.sites.size(), others.size());
+  for (std::size_t i = 0; i < others.size(); ++i) {
+    EXPECT_EQ(batch.sites[i].name, others[i].name);
+    EXPECT_EQ(batch.sites[i].contact, others[i].contact);
+    ASSERT_EQ(batch.sites[i].press.loading.size(), others[i].press.loading.size());
+    EXPECT_EQ(batch.sites[i].press.loading.back().force, others[i].press.loading.back().force);
+  }
+}
+
 TEST(Batch, SplitsTheLogIntoPressesAlongTheirNormals) {
-  const std::vector<BatchSite> sites = split_batch(log_of(), settings());
+  const std::vector<BatchSite> sites = split_batch(log_of(), settings()).sites;
   ASSERT_EQ(sites.size(), 3U);
   EXPECT_EQ(sites.front().name, "site 5") << "in order of their numbers";
   for (std::size_t i = 0; i < 3; ++i) {
@@ -87,7 +106,7 @@ TEST(Batch, SplitsTheLogIntoPressesAlongTheirNormals) {
 TEST(Batch, LeavesSitesOut) {
   BatchSettings without = settings();
   without.leave_out = {"6"};
-  const std::vector<BatchSite> sites = split_batch(log_of(), without);
+  const std::vector<BatchSite> sites = split_batch(log_of(), without).sites;
   ASSERT_EQ(sites.size(), 2U);
   EXPECT_EQ(sites.back().name, "site 7");
   without.leave_out = {"9"};
@@ -115,31 +134,43 @@ TEST(Batch, FindsTheContactPointWhereItIsNotGiven) {
   BatchSettings found = settings();
   found.press.method = ContactMethod::Fit;
   found.press.baseline = BaselineMethod::Fit;
-  const std::vector<BatchSite> sites = split_batch(log, found);
+  const std::vector<BatchSite> sites = split_batch(log, found).sites;
   ASSERT_EQ(sites.size(), 1U);
   EXPECT_LT(norm(sites[0].contact - touch_of(1)), 2e-5);
 }
 
-TEST(Batch, RefusesWhatIsNoPressOfASite) {
+TEST(Batch, LeavesASiteOutWhosePressCannotBeUsed) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   BatchLog log = log_of();
   log.force[13][1] = nan;
-  expect_batch_refused(log, "row 14 has a value that is not finite");
+  expect_site_refused(log, "row 14 has a value that is not finite");
   log = log_of();
   for (std::size_t row = 10; row < 20; ++row) log.outward[row] = -log.outward[row];
-  expect_batch_refused(log, "moves out of the body along its normal");
+  expect_site_refused(log, "moves out of the body along its normal");
   log = log_of();
   for (std::size_t row = 10; row < 20; ++row) log.force[row] = -log.force[row];
-  expect_batch_refused(log, "the force points out of the body");
+  expect_site_refused(log, "the force points out of the body");
   log = log_of();
   for (std::size_t row = 10; row < 20; ++row) log.outward[row] = 0.5 * log.outward[row];
-  expect_batch_refused(log, "not 1");
+  expect_site_refused(log, "not 1");
   log = log_of();
   log.outward[12] = {0, 1, 0};
-  expect_batch_refused(log, "its normal changes");
+  expect_site_refused(log, "its normal changes");
   log = log_of();
   log.contact[12][0] += 1e-3;
-  expect_batch_refused(log, "its contact point changes");
+  expect_site_refused(log, "its contact point changes");
+  BatchSettings checked = settings();
+  checked.check = [](const BatchSite& site, const std::string& where) {
+    if (site.name == "site 6") refuse(where, "is too soft", "take another");
+  };
+  expect_site_refused(log_of(), "is too soft", checked);
+}
+
+/// A row that belongs to no site may belong to any, and what no site fulfils is no fault of a site.
+TEST(Batch, RefusesAsAWholeWhatIsNoFaultOfASite) {
+  BatchLog log = log_of();
+  for (Vec3& force : log.force) force = -force;
+  expect_batch_refused(log, "none of the 3 sites can be used", "robot.csv, site 5");
   log = log_of();
   log.site[4] = 0.5;
   expect_batch_refused(log, "row 5: its site is no whole number", "robot.csv");
@@ -148,7 +179,7 @@ TEST(Batch, RefusesWhatIsNoPressOfASite) {
 }
 
 TEST(Batch, RecordedPathsKeepTheSamplesAndStateTheirUncertainty) {
-  const std::vector<BatchSite> sites = split_batch(log_of(kNoise), settings());
+  const std::vector<BatchSite> sites = split_batch(log_of(kNoise), settings()).sites;
   const RecordedPathSettings with{kNoise, 0.02, 0};
   int inside = 0, count = 0;
   for (std::size_t i = 0; i < sites.size(); ++i) {
