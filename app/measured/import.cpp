@@ -158,6 +158,7 @@ class Importer {
             const PlacedAt& place, const m::PressCurve& curve) {
     checks_.check_depth(reader_.path_of(where).string(), curve);
     checks_.check_stiffness(where, curve);
+    checks_.check_range(where, curve);
     checks_.check_drift(where, curve);
     const m::PressCurve press = reader_.before_relaxing(curve, where);
     std::vector<m::PressCurve>& presses = records_at(place.vertex).presses;
@@ -197,6 +198,7 @@ class Importer {
   SiteHistory read_history(const HistoryFileSection& section, bool placed) {
     SiteHistory site;
     site.history = reader_.history(section);
+    checks_.check_range(section.file, site.history);
     if (placed && (section.vertex >= 0 || std::isfinite(section.site[0])))
       site.vertex = place_of(section).vertex;
     add_file(reader_.path_of(section.file));

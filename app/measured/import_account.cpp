@@ -24,6 +24,14 @@ const char* drift_word(m::DriftState state) {
   return "";
 }
 
+/// Samples are counted from 1.
+Json saturation_account(const std::optional<m::Saturation>& saturation) {
+  if (!saturation) return nullptr;
+  return {{"reading_N", saturation->reading},    {"from_s", json_number(saturation->from)},
+          {"to_s", json_number(saturation->to)}, {"first_sample", saturation->first + 1},
+          {"last_sample", saturation->last + 1}, {"travel_m", saturation->travel}};
+}
+
 Json end_account(const CurvePath& path) {
   const CurveSample& end = path.samples.back();
   return {{"repeats", path.repeats},
@@ -59,7 +67,8 @@ Json press_account(const std::string& file, const m::CsvTable& table, const Plac
           {"deepest_m", curve.loading.back().depth},
           {"largest_force_N", curve.loading.back().force},
           {"work_loading_J", curve.work_loading},
-          {"returned_fraction", json_number(returned)}};
+          {"returned_fraction", json_number(returned)},
+          {"saturation", saturation_account(curve.saturation)}};
 }
 
 Json sites_account(const Curves& curves) {

@@ -30,6 +30,16 @@ double extent_of(const Body& body) {
   return norm(high - low);
 }
 
+/// "from 1.2 s to 2.3 s (samples 61 to 116) the force stays at exactly 0.5 N while ...".
+std::string saturation_text(const m::Saturation& s) {
+  const std::string samples = fmt::format("samples {} to {}", s.first + 1, s.last + 1);
+  const std::string span =
+      std::isnan(s.from) ? "in the " + samples
+                         : fmt::format("from {:.5g} s to {:.5g} s ({})", s.from, s.to, samples);
+  return fmt::format("{} the force stays at exactly {} while the tool goes on by {}", span,
+                     force_text(std::abs(s.reading)), length_text(s.travel));
+}
+
 }  // namespace
 
 double tolerance_on(const Body& body, double tool_radius) {
@@ -93,6 +103,22 @@ void RecordChecks::check_stiffness(const std::string& where, const m::PressCurve
       fmt::format("{}: {} at {} is the force of a half-space of {:.2g} Pa: check the units of "
                   "force and displacement",
                   where, force_text(end.force), length_text(end.depth), modulus));
+}
+
+void RecordChecks::check_range(const std::string& where, const m::PressCurve& curve) {
+  if (!curve.saturation) return;
+  warn(
+      fmt::format("{}: {}, the load cell is at its limit, or the force was held; the curve ends "
+                  "before. Measure within the range of the load cell",
+                  where, saturation_text(*curve.saturation)));
+}
+
+void RecordChecks::check_range(const std::string& where, const m::History& history) {
+  if (!history.saturation || history.control == m::Control::Force) return;
+  warn(
+      fmt::format("{}: {}, the load cell is at its limit; the record is kept whole, with these "
+                  "samples: leave it out, or measure within the range of the load cell",
+                  where, saturation_text(*history.saturation)));
 }
 
 void RecordChecks::check_drift(const std::string& where, const m::PressCurve& curve) {

@@ -8,6 +8,7 @@
 
 #include "app/measured/sidecar.hpp"
 #include "fitting/measurement/records/batch.hpp"
+#include "fitting/measurement/records/history.hpp"
 #include "fitting/measurement/records/press.hpp"
 #include "format/body.hpp"
 #include "format/curves.hpp"
@@ -30,6 +31,10 @@ class RecordChecks {
   void check_depth(const std::string& where, const measured::PressCurve& curve);
   /// A wrong unit makes the specimen far stiffer, or softer, than what is soft.
   void check_stiffness(const std::string& where, const measured::PressCurve& curve);
+  /// A press beyond the range of the load cell has lost its end.
+  void check_range(const std::string& where, const measured::PressCurve& curve);
+  /// A record that is kept whole has the readings of such a press among its samples.
+  void check_range(const std::string& where, const measured::History& history);
   /// What the samples out of contact leave open about the force at the end of loading.
   void check_drift(const std::string& where, const measured::PressCurve& curve);
   /// Only the part of the force along the press becomes a curve.

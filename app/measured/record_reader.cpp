@@ -148,8 +148,10 @@ std::string RecordReader::conversion() const {
 m::PressRecord RecordReader::record(const std::string& file, const m::CsvTable& table,
                                     m::Signs& signs) const {
   m::PressRecord record{path_of(file).string(),
-                        column(table, sidecar_.columns.time, Dimension::Time), displacement(table),
-                        force(table)};
+                        column(table, sidecar_.columns.time, Dimension::Time),
+                        displacement(table),
+                        force(table),
+                        {}};
   signs = orient(record);
   return record;
 }
@@ -184,6 +186,7 @@ m::RobotLog RecordReader::robot_log(const RobotFileSection& section,
   log.time = column(table, c.time, Dimension::Time);
   log.tip = positions(table, {c.x, c.y, c.z});
   log.force = forces(table);
+  log.readings = readings(table);
   return log;
 }
 
@@ -195,10 +198,15 @@ std::vector<Vec3> RecordReader::positions(const m::CsvTable& table,
   return points;
 }
 
+/// Forces as the channels of the sensor read them.
+std::vector<Vec3> RecordReader::readings(const m::CsvTable& table) const {
+  const ColumnsSection& c = sidecar_.columns;
+  return vectors(table, {c.fx, c.fy, c.fz}, Dimension::Force);
+}
+
 /// Forces of the tool on the body, in the body's frame.
 std::vector<Vec3> RecordReader::forces(const m::CsvTable& table) const {
-  const ColumnsSection& c = sidecar_.columns;
-  std::vector<Vec3> forces = vectors(table, {c.fx, c.fy, c.fz}, Dimension::Force);
+  std::vector<Vec3> forces = readings(table);
   const double sign = sidecar_.placement.force_is == "on body" ? 1 : -1;
   for (Vec3& force : forces) force = registration_.motion.rotate(sign * force);
   return forces;
@@ -240,6 +248,7 @@ m::Batch RecordReader::batch(const BatchFileSection& section, const m::CsvTable&
   batch.time = column(table, c.time, Dimension::Time);
   batch.position = positions(table, {c.x, c.y, c.z});
   batch.force = forces(table);
+  batch.readings = readings(table);
   batch.outward = normals(table);
   batch.contact = positions(table, {c.contact_x, c.contact_y, c.contact_z});
   batch.position_to_skin = sidecar_.tool.reference == "centre" ? sidecar_.tool.radius : 0;

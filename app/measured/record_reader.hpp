@@ -66,6 +66,7 @@ class RecordReader {
                             const std::array<std::string, 3>& names, Dimension dimension) const;
   std::vector<Vec3> positions(const measured::CsvTable& table,
                               const std::array<std::string, 3>& names) const;
+  std::vector<Vec3> readings(const measured::CsvTable& table) const;
   std::vector<Vec3> forces(const measured::CsvTable& table) const;
   std::vector<Vec3> normals(const measured::CsvTable& table) const;
 

@@ -36,7 +36,8 @@ void check_columns(const BatchLog& log) {
   const std::size_t rows = log.site.size();
   const bool same = log.outward.size() == rows && log.position.size() == rows &&
                     log.force.size() == rows && (log.time.empty() || log.time.size() == rows) &&
-                    (log.contact.empty() || log.contact.size() == rows);
+                    (log.contact.empty() || log.contact.size() == rows) &&
+                    (log.readings.empty() || log.readings.size() == rows);
   if (!same) refuse(log.name, "its columns have different lengths", "give one value per row");
   if (rows == 0) refuse(log.name, "it has no rows", "copy or record it again");
 }
@@ -110,11 +111,15 @@ BatchSite site_of(const BatchLog& log, const Rows& rows, const std::string& name
   const bool given = !log.contact.empty();
   const Vec3 origin =
       given ? common_value(log.contact, rows, kSamePoint, where, "contact point") : Vec3{};
-  PressRecord record{where, {}, {}, {}};
+  PressRecord record{where, {}, {}, {}, {}};
   for (const std::size_t row : rows) {
     if (!log.time.empty()) record.time.push_back(log.time[row]);
     record.displacement.push_back(dot(log.position[row] - origin, inward));
     record.force.push_back(dot(log.force[row], inward));
+  }
+  for (std::size_t axis = 0; axis < 3 && !log.readings.empty(); ++axis) {
+    std::vector<double>& channel = record.channels.emplace_back();
+    for (const std::size_t row : rows) channel.push_back(log.readings[row][axis]);
   }
   const auto deepest = static_cast<std::size_t>(
       std::max_element(record.displacement.begin(), record.displacement.end()) -

@@ -23,6 +23,7 @@ struct BatchLog {
   std::vector<Vec3> outward;    ///< unit normal out of the body, measured
   std::vector<Vec3> position;   ///< logged point of the tool
   std::vector<Vec3> force;      ///< N, of the tool on the body
+  std::vector<Vec3> readings;   ///< N, of the channels of the force sensor; may be empty
   double position_to_skin = 0;  ///< m, from the logged point along the press to the tool's tip
 };
 

@@ -103,6 +103,7 @@ History analyse_history(const PressRecord& record, const HistorySettings& settin
   history.time = record.time;
   history.baseline = curve.baseline;
   history.contact = curve.contact;
+  history.saturation = curve.saturation;
   const Baseline& b = curve.baseline;
   for (std::size_t i = 0; i < record.time.size(); ++i) {
     const double force = record.force[i] - b.offset - b.drift * (record.time[i] - b.start);

@@ -35,6 +35,7 @@ struct History {
   std::vector<Phase> phases;   ///< in order of time, without overlap
   Baseline baseline;
   ContactPoint contact;
+  std::optional<Saturation> saturation;  ///< of the first press; its samples are kept, too
 };
 
 /// A record and the site at which it was made.

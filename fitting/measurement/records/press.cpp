@@ -145,6 +145,68 @@ std::size_t count_at_rest(const std::vector<double>& displacement) {
   return std::max<std::size_t>(1, static_cast<std::size_t>(moved - displacement.begin()));
 }
 
+/// Readings at their limit, of the force or of a channel that has a good part of it; the first
+/// where several are.
+std::optional<Saturation> saturation_in(const PressRecord& record, const Cycle& cycle) {
+  if (record.channels.empty()) return saturation_of(record.force, record.displacement, cycle);
+  constexpr double kGoodPart = 0.5;
+  const auto rise = [&](const std::vector<double>& values) {
+    double largest = 0;
+    for (std::size_t i = cycle.begin; i < cycle.loading_end; ++i)
+      largest = std::max(largest, std::abs(values[i] - values[cycle.begin]));
+    return largest;
+  };
+  std::optional<Saturation> first;
+  for (const std::vector<double>& channel : record.channels) {
+    if (rise(channel) < kGoodPart * rise(record.force)) continue;
+    const std::optional<Saturation> found = saturation_of(channel, record.displacement, cycle);
+    if (found && (!first || found->first < first->first)) first = found;
+  }
+  return first;
+}
+
+void end_before(const Saturation& saturation, Cycle& cycle, const std::string& where) {
+  if (saturation.first < cycle.begin + kFewestInContact) {
+    refuse(where,
+           "the load cell is at its limit of " + force_text(std::abs(saturation.reading)) +
+               " from the beginning",
+           "measure within the range of the load cell");
+  }
+  cycle.loading_end = saturation.first;
+}
+
+/// One press whose branches are known.
+PressCurve analyse_cycle(const PressRecord& record, const Cycle& cycle,
+                         const PressSettings& settings) {
+  check_compliance(record, cycle, settings.compliance);
+  const BaselineAndContact found = baseline_and_contact(record, cycle, settings);
+  PressCurve curve;
+  curve.baseline = found.baseline;
+  curve.contact = found.contact;
+  curve.common = found.common;
+  const std::vector<DepthForce> loading = corrected(
+      record, curve.baseline, cycle.begin, cycle.begin, cycle.loading_end, settings.compliance);
+  const std::vector<DepthForce> unloading = corrected(
+      record, curve.baseline, cycle.begin, cycle.unloading_begin, cycle.end, settings.compliance);
+  if (settings.method == ContactMethod::Threshold) {
+    curve.contact = contact_by_threshold(loading, settings.threshold, record.name);
+    curve.common.replace_contact(curve.contact);
+  }
+  curve.loading = without_pauses(beyond(loading, curve.contact.displacement));
+  curve.unloading = beyond(unloading, curve.contact.displacement);
+  if (settings.method == ContactMethod::Given && curve.loading.empty())
+    refuse(record.name, "the contact point that is given is beyond the whole press",
+           "correct the point, and its unit");
+  if (curve.loading.size() < kFewestInContact) {
+    refuse(record.name, "fewer than " + std::to_string(kFewestInContact) + " samples in contact",
+           "record more densely, or press deeper");
+  }
+  curve.work_loading = work_of(curve.loading);
+  curve.work_returned = -work_of(curve.unloading);
+  if (!record.time.empty()) curve.rate = rate_of(curve.loading, settings.compliance);
+  return curve;
+}
+
 }  // namespace
 
 Signs orient(PressRecord& record) {
@@ -172,35 +234,27 @@ PressCurve analyse_press(const PressRecord& record, const PressSettings& setting
   if (cycles.empty()) {
     refuse(record.name, "the displacement shows no press", "check which column it is");
   }
-  const Cycle& cycle = chosen(cycles, settings.cycle, record.name);
-  check_compliance(record, cycle, settings.compliance);
-  const BaselineAndContact found = baseline_and_contact(record, cycle, settings);
+  Cycle cycle = chosen(cycles, settings.cycle, record.name);
+  std::optional<Saturation> saturation = saturation_in(record, cycle);
+  if (saturation && !record.time.empty()) {
+    saturation->from = record.time[saturation->first];
+    saturation->to = record.time[saturation->last];
+  }
+  if (saturation) end_before(*saturation, cycle, record.name);
   PressCurve curve;
+  try {
+    curve = analyse_cycle(record, cycle, settings);
+  } catch (const Error& error) {
+    if (!saturation) throw;
+    throw Error(error.kind(), error.where(),
+                error.problem() + "; the press is used up to sample " +
+                    std::to_string(saturation->first) + ", where the load cell reaches its limit",
+                error.remedy());
+  }
   curve.cycles = static_cast<int>(cycles.size());
-  curve.cycle = static_cast<int>(&cycle - cycles.data()) + 1;
-  curve.baseline = found.baseline;
-  curve.contact = found.contact;
-  curve.common = found.common;
-  const std::vector<DepthForce> loading = corrected(
-      record, curve.baseline, cycle.begin, cycle.begin, cycle.loading_end, settings.compliance);
-  const std::vector<DepthForce> unloading = corrected(
-      record, curve.baseline, cycle.begin, cycle.unloading_begin, cycle.end, settings.compliance);
-  if (settings.method == ContactMethod::Threshold) {
-    curve.contact = contact_by_threshold(loading, settings.threshold, record.name);
-    curve.common.replace_contact(curve.contact);
-  }
-  curve.loading = without_pauses(beyond(loading, curve.contact.displacement));
-  curve.unloading = beyond(unloading, curve.contact.displacement);
-  if (settings.method == ContactMethod::Given && curve.loading.empty())
-    refuse(record.name, "the contact point that is given is beyond the whole press",
-           "correct the point, and its unit");
-  if (curve.loading.size() < kFewestInContact) {
-    refuse(record.name, "fewer than " + std::to_string(kFewestInContact) + " samples in contact",
-           "record more densely, or press deeper");
-  }
-  curve.work_loading = work_of(curve.loading);
-  curve.work_returned = -work_of(curve.unloading);
-  if (!record.time.empty()) curve.rate = rate_of(curve.loading, settings.compliance);
+  curve.cycle = settings.cycle > 0 ? settings.cycle : curve.cycles + settings.cycle + 1;
+  curve.saturation = saturation;
+  if (saturation) curve.work_returned = kUnknown;
   return curve;
 }
 

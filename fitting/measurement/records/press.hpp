@@ -4,10 +4,12 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "fitting/measurement/records/onset.hpp"
+#include "fitting/measurement/records/saturation.hpp"
 #include "format/numbers.hpp"
 
 namespace palpate::measured {
@@ -19,6 +21,8 @@ struct PressRecord {
   std::vector<double> time;
   std::vector<double> displacement;
   std::vector<double> force;
+  /// N, readings of the channels of the load cell, where the force is made of several; else empty.
+  std::vector<std::vector<double>> channels;
 };
 
 enum class ContactMethod {
@@ -104,18 +108,19 @@ struct PressCurve {
   Baseline baseline;
   ContactPoint contact;
   CommonErrors common;
-  std::vector<DepthForce> loading;    ///< from the contact on, in order of time, without pauses
-  std::vector<DepthForce> unloading;  ///< back to the contact, in order of time
-  int cycles = 0;                     ///< presses found in the record
-  int cycle = 0;                      ///< which of them this is, from 1
-  double rate = kUnknown;             ///< m/s, mean speed of loading
-  double work_loading = 0;            ///< J
-  double work_returned = 0;           ///< J; the rest is lost in the specimen
+  std::vector<DepthForce> loading;       ///< from the contact on, in order of time, without pauses
+  std::vector<DepthForce> unloading;     ///< back to the contact, in order of time
+  int cycles = 0;                        ///< presses found in the record
+  int cycle = 0;                         ///< which of them this is, from 1
+  double rate = kUnknown;                ///< m/s, mean speed of loading
+  double work_loading = 0;               ///< J
+  double work_returned = 0;              ///< J; the rest is lost in the specimen; NaN: saturated
+  std::optional<Saturation> saturation;  ///< `loading` ends before it
 };
 
 /// Sort out one press: the branches by the turning points of the displacement; baseline, drift and
 /// contact point with their joint uncertainty (docs/theory-measured.md); the depth less what the
-/// machine itself yields.
+/// machine itself yields. A press beyond the range of the load cell ends where that is reached.
 /// @throws Error(Configuration) naming the record: columns of unequal length, time that goes
 ///   backwards, no press, no such cycle, a press that begins in contact, a force that never rises
 ///   above the noise, a machine that by its compliance would yield nearly all the travel.

@@ -17,7 +17,8 @@ constexpr double kLargestTilt = std::numbers::pi / 6;
 
 void check_log(const RobotLog& log) {
   if (log.tip.size() != log.force.size() ||
-      (!log.time.empty() && log.time.size() != log.tip.size())) {
+      (!log.time.empty() && log.time.size() != log.tip.size()) ||
+      (!log.readings.empty() && log.readings.size() != log.tip.size())) {
     refuse(log.name, "its columns have different lengths", "give one value per row");
   }
   if (log.tip.size() < 20) refuse(log.name, "fewer than 20 samples", "record more densely");
@@ -120,6 +121,23 @@ DragCurve drag_curve(const RobotLog& log, const Parts& parts, const DragSpan& sp
   return drag;
 }
 
+/// The first samples of the log as a press.
+PressRecord press_of(const RobotLog& log, const Parts& parts, std::size_t count) {
+  const auto first = [count](const std::vector<double>& values) {
+    return std::vector<double>(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(count));
+  };
+  PressRecord press{log.name,
+                    log.time.empty() ? std::vector<double>{} : first(log.time),
+                    first(parts.along),
+                    first(parts.force_along),
+                    {}};
+  for (std::size_t axis = 0; axis < 3 && !log.readings.empty(); ++axis) {
+    std::vector<double>& channel = press.channels.emplace_back();
+    for (std::size_t i = 0; i < count; ++i) channel.push_back(log.readings[i][axis]);
+  }
+  return press;
+}
+
 }  // namespace
 
 RobotCurves analyse_robot_log(const RobotLog& log, const Body& body,
@@ -163,13 +181,8 @@ RobotCurves analyse_robot_log(const RobotLog& log, const Body& body,
            "check placement.force_is: \"on body\" or \"on tool\"");
   }
   const std::optional<DragSpan> drag = drag_of(parts, touch, first_deep);
-  PressRecord press{log.name, log.time, parts.along, parts.force_along};
-  if (drag) {
-    const auto cut = static_cast<std::ptrdiff_t>(drag->begin + 1);
-    press.displacement.erase(press.displacement.begin() + cut, press.displacement.end());
-    press.force.erase(press.force.begin() + cut, press.force.end());
-    if (!press.time.empty()) press.time.erase(press.time.begin() + cut, press.time.end());
-  }
+  const PressRecord press =
+      press_of(log, parts, drag ? std::min(drag->begin + 1, log.tip.size()) : log.tip.size());
   curves.press = analyse_press(press, settings.press);
   curves.touch = tip + (curves.press.contact.displacement - parts.along[touch]) * inward;
   if (drag) {

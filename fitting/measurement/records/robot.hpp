@@ -19,6 +19,7 @@ struct RobotLog {
   std::vector<double> time;  ///< may be empty
   std::vector<Vec3> tip;     ///< reference point of the tool
   std::vector<Vec3> force;
+  std::vector<Vec3> readings;  ///< N, of the channels of the force sensor; may be empty
 };
 
 struct RobotSettings {

@@ -341,6 +341,44 @@ TEST_F(Imports, WarnOfADriftThatTheRecordDoesNotExclude) {
               HasSubstr("do not exclude a drift of"));
 }
 
+/// A load cell of half the range: the curve is that of the whole record as far as it goes, and the
+/// warning says where it ends and why.
+TEST_F(Imports, EndAPressWhereTheLoadCellReachesItsLimit) {
+  const Bench bench;
+  write_record("whole.csv", bench, 1);
+  const measured::PressRecord record = measured::press_on(bench, 1);
+  const double limit = 0.5 * *std::max_element(record.force.begin(), record.force.end());
+  double reached = 0;
+  {
+    std::ofstream file(folder_ / "clipped.csv");
+    file.precision(17);
+    file << "t (s),x (mm),f (N)\n";
+    for (std::size_t i = 0; i < record.time.size(); ++i) {
+      if (reached == 0 && record.force[i] >= limit) reached = record.time[i];
+      file << record.time[i] << ',' << 1e3 * record.displacement[i] << ','
+           << std::min(record.force[i], limit) << '\n';
+    }
+  }
+  const Import whole = import_measurement(write_sidecar(press("whole.csv", 7)), {});
+  EXPECT_TRUE(whole.account.at("records").at(0).at("saturation").is_null());
+  const Import clipped = import_measurement(write_sidecar(press("clipped.csv", 7)), {});
+  const auto& record_account = clipped.account.at("records").at(0);
+  EXPECT_NEAR(record_account.at("saturation").at("from_s").get<double>(), reached, 1e-9);
+  EXPECT_NEAR(record_account.at("saturation").at("reading_N").get<double>(), limit, 1e-9);
+  EXPECT_TRUE(record_account.at("returned_fraction").is_null());
+  ASSERT_EQ(clipped.account.at("warnings").size(), 1U);
+  const auto warning = clipped.account.at("warnings").at(0).get<std::string>();
+  for (const char* words : {"clipped.csv: from ", " s (samples ", "the force stays at exactly",
+                            "the load cell is at its limit", "the curve ends before"})
+    EXPECT_THAT(warning, HasSubstr(words));
+  const auto& samples = clipped.curves.sites[0].paths[0].samples;
+  const double depth = samples.back().displacement;
+  EXPECT_LT(depth, 0.8 * whole.curves.depth);
+  for (const CurveSample& sample : samples)
+    EXPECT_NEAR(-sample.force[2],
+                measured::sneddon_force(sample.displacement, bench.radius, bench.modulus), 0.01);
+}
+
 /// Metres that were written as millimetres: 4 m of depth for a tool of 5 mm.
 TEST_F(Imports, WarnOfADepthThatLooksLikeAWrongUnit) {
   Bench bench;

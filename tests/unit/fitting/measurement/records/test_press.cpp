@@ -177,7 +177,7 @@ TEST(Press, SignsOfTheMachineDoNotMatter) {
 TEST(Press, SignsOfALongHoldAreFound) {
   for (const double sx : {1.0, -1.0}) {
     for (const double sf : {1.0, -1.0}) {
-      PressRecord record{"hold", {}, {}, {}};
+      PressRecord record{"hold", {}, {}, {}, {}};
       for (int i = 0; i < 3050; ++i) {
         const double t = 0.1 * i, ramp = std::clamp((t - 2) / 3, 0.0, 1.0);
         record.time.push_back(t);
