@@ -2,10 +2,14 @@
 #include "format/crash_safe_file.hpp"
 
 #include <fcntl.h>
+#include <signal.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
+#include <charconv>
+#include <cstdint>
 #include <cstring>
 #include <string>
 #include <system_error>
@@ -44,13 +48,47 @@ void require_file_name(const fs::path& target) {
   }
 }
 
+/// Where process numbers mean the same: eight hexadecimal digits of the host and, on Linux, of the
+/// namespace of process numbers, which containers on one host do not share.
+std::string process_space() {
+  std::string of(256, '\0');
+  if (::gethostname(of.data(), of.size() - 1) != 0) of = "unknown";
+  std::array<char, 64> space{};
+  if (::readlink("/proc/self/ns/pid", space.data(), space.size() - 1) > 0) of += space.data();
+  std::uint32_t hash = 2166136261U;  // FNV-1a
+  for (const char c : of) hash = (hash ^ static_cast<unsigned char>(c)) * 16777619U;
+  constexpr const char* kDigits = "0123456789abcdef";
+  std::string digits;
+  for (int shift = 28; shift >= 0; shift -= 4) digits += kDigits[(hash >> shift) & 15U];
+  return digits;
+}
+
+/// What killed processes left of a target. The temporaries of processes that run stay, and those
+/// of other hosts, of which it is not known.
+void remove_abandoned(const fs::path& folder, const std::string& before, const std::string& after) {
+  std::error_code ignored;
+  for (fs::directory_iterator entry(folder, ignored), end; !ignored && entry != end;
+       entry.increment(ignored)) {
+    const std::string name = entry->path().filename().string();
+    if (!name.starts_with(before) || !name.ends_with(after)) continue;
+    if (name.size() <= before.size() + after.size()) continue;
+    pid_t process = 0;
+    const char* last = name.data() + name.size() - after.size();
+    const auto [read, problem] = std::from_chars(name.data() + before.size(), last, process);
+    if (problem != std::errc() || read != last || process <= 0) continue;
+    if (::kill(process, 0) == 0 || errno != ESRCH) continue;
+    ::unlink(entry->path().c_str());
+  }
+}
+
 }  // namespace
 
 CrashSafeFile::CrashSafeFile(const fs::path& target) : target_(without_links(target)) {
   require_file_name(target_);
-  std::string name = ".";
-  name.append(target_.filename().string()).append(".partial-").append(std::to_string(::getpid()));
-  temporary_ = folder_of(target_) / name;
+  const std::string before = "." + target_.filename().string() + ".partial-";
+  const std::string after = "-" + process_space();
+  remove_abandoned(folder_of(target_), before, after);
+  temporary_ = folder_of(target_) / (before + std::to_string(::getpid()) + after);
   ::unlink(temporary_.c_str());  // left by a killed process that had the same number
   descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (descriptor_ < 0) fail("cannot be created", errno);

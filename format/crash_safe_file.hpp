@@ -8,10 +8,12 @@
 
 namespace palpate {
 
-/// Writes a file under the temporary name `.<name>.partial-<pid>` in the folder of the target and
-/// gives it its final name only in commit(), after its bytes are on the disk. Whatever happens
-/// before, a previous file of that name stays as it was. Destroying an uncommitted file removes the
-/// temporary. A symbolic link as target is followed, so the link survives.
+/// Writes a file under the temporary name `.<name>.partial-<pid>-<host>` in the folder of the
+/// target and gives it its final name only in commit(), after its bytes are on the disk. Whatever
+/// happens before, a previous file of that name stays as it was. Destroying an uncommitted file
+/// removes the temporary; one that a killed process left is removed by the next that writes the
+/// target on the same host (on Windows by none). A symbolic link as target is followed, so the link
+/// survives.
 ///
 /// Every failure is an Error: Configuration for a target that cannot be a file (folder missing, no
 /// permission, not a regular file), Internal when the disk refuses (full, quota, size limit, I/O).
