@@ -141,6 +141,39 @@ json vertex_data(const ReportInput& input, const std::vector<PeakForce>& peaks) 
           {"lateral_peak", column(lateral_peak)}};
 }
 
+/// Where the samples of a path come from.
+enum PathOrigin : std::uint8_t { Computed = 0, Measured = 1, Assumed = 2 };
+
+/// A lateral path that nobody repeated, of a site that was measured, is made of its normal path.
+PathOrigin origin_of(const SiteCurves& site, const CurvePath& path) {
+  if (path.repeats > 0) return Measured;
+  const bool site_is_measured =
+      std::ranges::any_of(site.paths, [](const CurvePath& other) { return other.repeats > 0; });
+  return site_is_measured && path.kind == PathKind::Lateral ? Assumed : Computed;
+}
+
+/// What is known about the forces of measured paths; null where none is measured.
+json measurement_data(const Curves& curves) {
+  std::vector<std::uint8_t> origin;
+  std::vector<std::int32_t> repeats;
+  std::vector<float> uncertainty, scatter;
+  for (const SiteCurves& site : curves.sites) {
+    for (const CurvePath& path : site.paths) {
+      origin.push_back(origin_of(site, path));
+      repeats.push_back(path.repeats);
+      for (const CurveSample& sample : path.samples) {
+        uncertainty.push_back(static_cast<float>(sample.force_uncertainty));
+        scatter.push_back(static_cast<float>(sample.force_scatter));
+      }
+    }
+  }
+  if (std::ranges::all_of(origin, [](std::uint8_t of) { return of == Computed; })) return {};
+  return {{"origin", column(origin)},
+          {"repeats", column(repeats)},
+          {"uncertainty", column(uncertainty)},
+          {"scatter", column(scatter)}};
+}
+
 /// What is felt along a drag more than at its start, N: NaN of other paths and without a response.
 float rendered_drag(const Library& library, const CurvePath& path, const NodeResponse& node,
                     double displacement) {
@@ -182,7 +215,8 @@ json sample_data(const Curves& curves, const Library& library) {
           {"force", column(force)},
           {"rendered", column(rendered)},
           {"coupled", library.kind == ResponseKind::Coupled},
-          {"volume_change", column(volume_change)}};
+          {"volume_change", column(volume_change)},
+          {"measurement", measurement_data(curves)}};
 }
 
 namespace {

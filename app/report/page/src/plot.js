@@ -115,7 +115,8 @@ const aroundZero = (_, low, high) => {
 
 /**
  * Several curves and markers, each with its own abscissae.
- * sets: [{label, colour, x, y, markers: bool, width, dash}]; every x ascending, later sets on top.
+ * sets: [{label, colour, x, y, markers: bool, width, dash, spread}]; every x ascending, later sets on top.
+ * spread: half the length of a bar at each sample, NaN for none; the CSV has the ends of the bars.
  * mark: abscissa of a dashed line. signed: ordinates of either sign. tight: abscissas need not show zero.
  */
 export function curvePlot(title, xLabel, yLabel, height, { signed = false, tight = false } = {}) {
@@ -131,12 +132,12 @@ export function curvePlot(title, xLabel, yLabel, height, { signed = false, tight
       dash: s.dash,
       pxAlign: 0,
       spanGaps: true,
-      paths: s.markers ? () => null : uPlot.paths.linear(),
+      paths: s.markers || s.hidden ? () => null : uPlot.paths.linear(),
       points: s.markers
         ? { show: true, size: MARKER, width: 1.5, stroke: named(s.colour), fill: named('paper'), paths: markers(s.colour, MARKER) }
         : { show: false },
     }))],
-    hooks: { draw: [(u) => dashed(u, mark)] },
+    hooks: { draw: [(u) => dashed(u, mark), (u) => bars(u, sets)] },
   });
   const align = (sets) => {
     const x = Float64Array.from(new Set(sets.flatMap((s) => Array.from(s.x)))).sort();
@@ -150,8 +151,46 @@ export function curvePlot(title, xLabel, yLabel, height, { signed = false, tight
   const shown = figure(title, spec([]), [[0, 1]], height);
   return {
     element: shown.element,
-    set: (sets, mark) => shown.update(spec(sets, mark), align(sets)),
+    set: (sets, mark) => {
+      const drawn = sets.flatMap(withEnds);
+      shown.update(spec(drawn, mark), align(drawn));
+    },
   };
+}
+
+/** The ends of the bars of a set as sets of their own, which are not drawn: axes and CSV have them; then the set. */
+function withEnds(set) {
+  if (!set.spread) return [set];
+  const end = (sign, name) => ({
+    label: `${set.label}, ${name}`, colour: set.colour, hidden: true, x: set.x,
+    y: set.y.map((y, i) => (Number.isFinite(set.spread[i]) ? y + sign * set.spread[i] : null)),
+  });
+  return [end(-1, 'lower end of the bar'), end(1, 'upper end of the bar'), set];
+}
+
+/** Bars of the sets that have some, with a cap at each end. */
+function bars(u, sets) {
+  const CAP = 3 * devicePixelRatio;
+  const { ctx: context } = u;
+  context.save();
+  context.lineWidth = 1.2 * devicePixelRatio;
+  sets.forEach((set) => {
+    if (!set.spread) return;
+    context.strokeStyle = colour(set.colour);
+    context.beginPath();
+    set.x.forEach((abscissa, i) => {
+      if (!(set.spread[i] > 0)) return;
+      const [x, low, high] = [u.valToPos(abscissa, 'x', true), u.valToPos(set.y[i] - set.spread[i], 'y', true), u.valToPos(set.y[i] + set.spread[i], 'y', true)];
+      context.moveTo(x, low);
+      context.lineTo(x, high);
+      for (const y of [low, high]) {
+        context.moveTo(x - CAP, y);
+        context.lineTo(x + CAP, y);
+      }
+    });
+    context.stroke();
+  });
+  context.restore();
 }
 
 function dashed(u, mark) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "app/report/page_data.hpp"
+#include "format/numbers.hpp"
 #include "tests/support/bodies.hpp"
 #include "tests/unit/app/report/columns.hpp"
 
@@ -49,6 +50,47 @@ TEST(SampleData, HasADragAtItsDepthFromItsStart) {
     EXPECT_NEAR(static_cast<double>(rendered[i]), 0.6 * 120 * d, 1e-6);
   }
   EXPECT_TRUE(data.at("coupled").get<bool>());
+}
+
+CurvePath path_of(PathKind kind, int repeats, double uncertainty) {
+  CurvePath path;
+  path.kind = kind;
+  path.repeats = repeats;
+  path.direction = kind == PathKind::Normal ? Vec3{0, 0, -1} : Vec3{1, 0, 0};
+  for (const double d : {0.0, 0.001}) {
+    CurveSample sample;
+    sample.displacement = d;
+    sample.force_uncertainty = uncertainty;
+    sample.force_scatter = 0.5 * uncertainty;
+    path.samples.push_back(sample);
+  }
+  return path;
+}
+
+/// A measured press with a lateral path that nobody measured, one with a drag, and a computed site.
+TEST(SampleData, TellsMeasuredFromAssumedAndComputedPaths) {
+  const Library library =
+      test::plate(8, 0.08, [](const Vec3&) { return test::wall_response(170, 120); });
+  SiteCurves pressed, dragged, computed;
+  pressed.vertex = 40;
+  pressed.paths = {path_of(PathKind::Normal, 3, 0.02), path_of(PathKind::Lateral, 0, kUnknown)};
+  dragged.vertex = 41;
+  dragged.paths = {path_of(PathKind::Normal, 1, 0.03), path_of(PathKind::Lateral, 2, 0.04)};
+  computed.vertex = 42;
+  computed.paths = {path_of(PathKind::Normal, 0, kUnknown),
+                    path_of(PathKind::Lateral, 0, kUnknown)};
+  Curves curves;
+  curves.sites = {pressed, dragged, computed};
+  const nlohmann::json data = sample_data(curves, library).at("measurement");
+  const std::string origin = from_base64(data.at("origin").front().get<std::string>()).value();
+  EXPECT_EQ(origin, std::string("\1\2\1\1\0\0", 6));
+  const std::vector<float> uncertainty = floats(data.at("uncertainty"));
+  ASSERT_EQ(uncertainty.size(), 12U);
+  EXPECT_EQ(uncertainty[1], 0.02F);
+  EXPECT_EQ(uncertainty[7], 0.04F);
+  EXPECT_EQ(floats(data.at("scatter"))[7], 0.02F);
+  curves.sites = {computed};
+  EXPECT_TRUE(sample_data(curves, library).at("measurement").is_null());
 }
 
 }  // namespace

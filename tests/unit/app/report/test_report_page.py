@@ -78,6 +78,25 @@ def to_micrometres(data):
                 p[key] *= 1e-5
 
 
+def to_measured(data):
+    """Every press measured three times, its forces known to 3 %; every lateral path made of it."""
+    s = data["samples"]
+    kind, offset, force = (column(s[k]) for k in ("kind", "offset", "force"))
+    pack = lambda code, values: base64.b64encode(struct.pack(f"<{len(values)}{code}", *values)).decode()  # noqa: E731
+    path_of = [p for p in range(len(kind)) for _ in range(offset[p], offset[p + 1])]
+    known = [math.nan if kind[p] else 0.03 * f for p, f in zip(path_of, force)]
+    s["measurement"] = {"origin": {"u1": pack("B", [2 if k else 1 for k in kind])},
+                        "repeats": {"i4": pack("i", [0 if k else 3 for k in kind])},
+                        "uncertainty": {"f4": pack("f", known)}, "scatter": {"f4": pack("f", [f / 2 for f in known])}}
+
+
+def to_measured_exactly(data):
+    to_measured(data)
+    u = column(data["samples"]["measurement"]["uncertainty"])
+    zeros = struct.pack(f"<{len(u)}f", *(math.nan if math.isnan(f) else 0 for f in u))
+    data["samples"]["measurement"]["uncertainty"] = {"f4": base64.b64encode(zeros).decode()}
+
+
 def to_many_sites(data):
     """A calibration of a slab: two shared constants and a modulus of each of twenty sites."""
     c = data["calibration"]
@@ -243,6 +262,46 @@ class ReportPage(unittest.TestCase):
             self.assertNotIn(slip, self.compared.text)
         self.assertIn("Error against the reference", self.compared.text)
         self.assertNotIn("Error against the reference", self.full.text)
+
+    def test_measured_curves_show_their_uncertainty_and_what_is_assumed(self):
+        act = """addEventListener('load', () => setTimeout(async () => {
+          const said = {csv: {}};
+          for (const button of document.querySelectorAll('#curves button[aria-label$="as CSV"]')) {
+            const create = URL.createObjectURL;
+            let blob;
+            URL.createObjectURL = (b) => { blob = b; return create.call(URL, b); };
+            button.click();
+            URL.createObjectURL = create;
+            said.csv[button.getAttribute('aria-label')] = await blob.text();
+          }
+          said.picture = document.querySelector('#curves canvas').toDataURL();
+          said.text = document.getElementById('curves').innerText;
+          document.body.append(Object.assign(document.createElement('p'), {id: 'said', textContent: JSON.stringify(said)}));
+        }, 300));"""
+        full = self.path / "full.html"
+        page, said = self.acted(with_other_data(full, self.path / "measured.html", to_measured).read_text(), act)
+        _, exact = self.acted(with_other_data(full, self.path / "exact.html", to_measured_exactly).read_text(), act)
+        _, computed = self.acted(full.read_text(), act)
+        self.assertIn("twice the standard uncertainty", said["text"])
+        self.assertIn("assumed, not measured", said["text"])
+        self.assertIn("lateral responses are assumed", page.by_id["certificate"])
+        self.assertIn("assumed where no drag was measured", page.text)
+        self.assertNotEqual(said["picture"], exact["picture"])  # the bars
+        normal, lateral = (next(v for k, v in said["csv"].items() if k.startswith(kind)) for kind in ("Normal", "Lateral"))
+        rows = [line.split(",") for line in re.sub(r'"([^"]*)"', lambda m: m[1].replace(",", ";"), normal).splitlines()]
+        names = rows[0]
+        node = page.by_id["stiffest-node"]
+        at = {what: names.index(next(n for n in names if n.startswith(f"node {node}; measured{what}")))
+              for what in ("; lower end", "; upper end", "; Force")}
+        ends = [[float(row[at[what]]) for what in at] for row in rows[1:] if row[at["; Force"]]]
+        self.assertGreater(len(ends), 3)
+        for low, high, force in ends:
+            self.assertAlmostEqual(high - force, 0.06 * force, delta=1e-5 * max(1, force))
+            self.assertAlmostEqual(force - low, 0.06 * force, delta=1e-5 * max(1, force))
+        self.assertRegex(lateral.splitlines()[0], r"node \d+, assumed")
+        self.assertNotRegex(lateral, "measured|computed|end of the bar")
+        for text in (computed["text"], *computed["csv"].values()):
+            self.assertNotRegex(text, "measured|assumed|standard uncertainty")
 
     def test_a_comparison_has_the_units_of_its_size(self):
         def axes(page):

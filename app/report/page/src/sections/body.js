@@ -11,6 +11,7 @@ import { Outline } from '../outline.js';
 import { secantStiffness, responseForce } from '../response.js';
 import { colour } from '../theme.js';
 import { errorOfVertices, errorsAt } from './comparison.js';
+import { hasAssumedPaths } from './curves.js';
 import { misfits, positionOf } from './fit.js';
 import * as units from '../units.js';
 
@@ -26,7 +27,7 @@ function fields(data) {
   const list = {
     stiffness: { label: 'Secant stiffness f(d)/d', unit: 'N/m', deep: true,
       ofVertex: (d) => all((v) => secantStiffness(data.normal, v, d)) },
-    lateral: { label: 'Lateral secant stiffness', unit: 'N/m', deep: true,
+    lateral: { label: `Lateral secant stiffness${hasAssumedPaths(data) ? ', assumed where no drag was measured' : ''}`, unit: 'N/m', deep: true,
       ofVertex: (d) => all((v) => secantStiffness(data.lateral, v, d)) },
     fit: { label: 'Fit error, normal', unit: '% of peak force',
       ofVertex: () => all((v) => (100 * vertices.normal_error[v]) / vertices.normal_peak[v]) },

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 import { definitions, el, paragraph, table } from '../dom.js';
 import * as units from '../units.js';
+import { hasAssumedPaths } from './curves.js';
 
 const nodes = (n) => `${units.count(n)} ${n === 1 ? 'node' : 'nodes'}`;
 
@@ -13,6 +14,7 @@ function notCovered(data) {
     'Quantized positions while the contact point slides, and flexible links, backlash, amplifier limits and missed samples of the device.',
     'Accuracy: the bounds are those of the rendered force, not of its error against the real body.',
   ];
+  if (hasAssumedPaths(data)) list.push('Measured drags: lateral responses are assumed, by lateral_ratio of the sidecar times the normal stiffness. The bounds are those of the assumed forces.');
   if (c.holes > 0) list.push(`${nodes(c.holes)} without a response: their triangles form a border and have no bounds.`);
   if (c.interpolated > 0) list.push(`${nodes(c.interpolated)} filled from neighbours: bounded like the others, but not computed.`);
   if (key.deepest > c.depth * (1 + 1e-6)) list.push(`Presses between ${units.length(c.depth)} and ${units.length(key.deepest)}, which were computed but lie deeper than the bounds.`);

@@ -8,6 +8,14 @@ import * as units from '../units.js';
 
 const NORMAL = 0, LATERAL = 1;
 const STEPS = 96;
+const COMPUTED = 0, MEASURED = 1, ASSUMED = 2;
+const ORIGIN = ['computed', 'measured', 'assumed'];
+const COVERAGE = 2;  // standard uncertainties of a bar: 95 % of a normal distribution
+
+const originOf = ({ measurement: m }, path) => m?.origin[path] ?? COMPUTED;
+
+/** Whether lateral responses were made of the normal ones, for want of a measurement. */
+export const hasAssumedPaths = ({ samples: s }) => s?.measurement?.origin.includes(ASSUMED) ?? false;
 
 /** Sampled paths of a node, in the units of the axes: [{x, y, rendered}]; y of a drag counts from its start. */
 function samples(data, vertex, kind, { length, force }) {
@@ -16,8 +24,10 @@ function samples(data, vertex, kind, { length, force }) {
   for (let p = 0; p < s.vertex.length; ++p) {
     if (s.vertex[p] !== vertex || s.kind[p] !== kind) continue;
     const [from, to] = [s.offset[p], s.offset[p + 1]];
-    paths.push({ x: Array.from(s.displacement.subarray(from, to), (d) => d * length.factor), y: Array.from(s.force.subarray(from, to), (f) => f * force.factor),
-      rendered: Array.from(s.rendered.subarray(from, to), (f) => f * force.factor) });
+    const inUnits = (column) => Array.from(column.subarray(from, to), (f) => f * force.factor);
+    const origin = originOf(s, p);
+    paths.push({ x: Array.from(s.displacement.subarray(from, to), (d) => d * length.factor), y: inUnits(s.force), rendered: inUnits(s.rendered), origin,
+      spread: origin === MEASURED ? inUnits(s.measurement.uncertainty).map((u) => COVERAGE * u) : undefined });
   }
   return paths;
 }
@@ -46,9 +56,11 @@ function rendered(columns, vertex, { length, force }) {
  *  node has none and no depth matters, the lateral response. */
 function lines(data, vertex, kind, axes) {
   const drags = kind === LATERAL ? samples(data, vertex, kind, axes).filter((path) => path.rendered.every(Number.isFinite)) : [];
-  if (drags.length) return drags.map(({ x, rendered: y }) => ({ x, y }));
+  if (drags.length) return drags.map(({ x, rendered: y, origin }) => ({ x, y, dash: origin === ASSUMED ? [6, 4] : undefined }));
   if (kind === LATERAL && data.samples.coupled) return [];
-  return [rendered(kind === NORMAL ? data.normal : data.lateral, vertex, axes)].filter(Boolean);
+  const line = rendered(kind === NORMAL ? data.normal : data.lateral, vertex, axes);
+  const assumed = samples(data, vertex, kind, axes).some(({ origin }) => origin === ASSUMED);
+  return line ? [{ ...line, dash: assumed ? [6, 4] : undefined }] : [];
 }
 
 function sets(data, shown, beside, kind, axes) {
@@ -57,9 +69,30 @@ function sets(data, shown, beside, kind, axes) {
     for (const line of lines(data, vertex, kind, axes)) out.push({ label: `node ${vertex}, neighbour`, colour: 'muted', width: 1, ...line });
   for (const { vertex, colour } of shown) {
     for (const line of lines(data, vertex, kind, axes)) out.push({ label: `node ${vertex}, fitted`, colour, ...line });
-    for (const { x, y } of samples(data, vertex, kind, axes)) out.push({ label: `node ${vertex}, computed`, colour, markers: true, x, y });
+    for (const { x, y, origin, spread } of samples(data, vertex, kind, axes)) out.push({ label: `node ${vertex}, ${ORIGIN[origin]}`, colour, markers: true, x, y, spread });
   }
   return out;
+}
+
+/** What the marks of measured curves mean; nothing of computed ones. */
+function legendOf(data) {
+  const { measurement: m } = data.samples;
+  if (!m) return [];
+  const known = m.uncertainty.some(Number.isFinite);
+  return [
+    paragraph(known ? 'Bars at measured samples: twice the standard uncertainty of the force to either side (95 %), with the scatter between repeats, baseline, contact point and load cell in it. The table has the same of the deepest force.'
+      : 'The measured forces have no known uncertainty.', 'note measured'),
+    hasAssumedPaths(data) ? paragraph('Lateral responses with dashed lines are assumed, not measured: the lateral stiffness is lateral_ratio of the sidecar times the normal one.', 'note assumed') : null,
+  ].filter(Boolean);
+}
+
+/** Force at the deepest sample of a measured press, with its uncertainty; the scatter between repeats. */
+function deepestOf({ samples: s }, vertex) {
+  const p = s.vertex.findIndex((v, i) => v === vertex && s.kind[i] === NORMAL && originOf(s, i) === MEASURED);
+  if (p < 0) return ['\u2013', '\u2013'];
+  const last = s.offset[p + 1] - 1, u = s.measurement.uncertainty[last], scatter = s.measurement.scatter[last], repeats = s.measurement.repeats[p];
+  return [`${units.force(s.force[last])} \u00b1 ${Number.isFinite(u) ? units.force(COVERAGE * u) : 'unknown'}`,
+    Number.isFinite(scatter) ? `${units.force(scatter)} of ${units.count(repeats)}` : repeats > 1 ? 'unknown' : '\u2013'];
 }
 
 /** The nodes that share a triangle with one. */
@@ -81,12 +114,12 @@ export class Curves {
     this.axes = { length: units.axis.length(data.key.depth), force: units.axis.force(data.key.max_force) };
     const { length, force } = this.axes;
     this.normal = curvePlot('Normal response: along the press direction', `Depth (${length.name})`, `Force (${force.name})`, 230);
-    this.lateral = curvePlot('Lateral response: along each drag, from its start', `Lateral deflection (${length.name})`, `Force (${force.name})`, 210);
+    this.lateral = curvePlot(`Lateral response${hasAssumedPaths(data) ? ', assumed where dashed' : ''}: along each drag, from its start`, `Lateral deflection (${length.name})`, `Force (${force.name})`, 210);
     this.neighbours = false;
     this.legend = el('div', {});
     this.element = el('div', { id: 'curves' }, this.normal.element, el('div', { class: 'lateral' }, this.lateral.element), this.legend,
-      paragraph('Markers: states of the curves. Lines: the rendered response, of drags at the depths and azimuths of the curves. Dashed: the depth of the picture, to which the stiffness and the change of the volume of the whole body belong.', 'note'),
-      this.chooser());
+      paragraph('Markers: states of the curves. Lines: the rendered response, of drags at the depths and azimuths of the curves. Upright dashes: the depth of the picture, to which the stiffness and the change of the volume of the whole body belong.', 'note'),
+      ...legendOf(data), this.chooser());
     nodes.onChange(() => this.refresh());
     this.refresh();
   }
@@ -105,7 +138,8 @@ export class Curves {
   }
 
   table(shown) {
-    const { vertices: v } = this.data;
+    const { vertices: v, samples: { measurement } } = this.data;
+    const scatter = measurement?.scatter.some(Number.isFinite);  // else no site has repeats
     const error = (e, peak) => (Number.isFinite(e) && peak > 0 ? units.percent(e / peak) : '\u2013');
     const rows = shown.map((n) => {
       const swatch = el('span', { class: 'swatch' });
@@ -118,9 +152,10 @@ export class Curves {
       return [[swatch, marker, n.role, close], el('span', { id: n.role.split(',').map((r) => r.trim().replace(' ', '-'))[0] + '-node' }, String(n.vertex)),
         status === HOLE ? RESPONSE[status] : units.significant(secantStiffness(this.data.normal, n.vertex, this.depth)),
         error(v.normal_error[n.vertex], v.normal_peak[n.vertex]), error(v.lateral_error[n.vertex], v.lateral_peak[n.vertex]),
-        units.volume(volumeChange(this.data, n.vertex, this.depth))];
+        ...(measurement ? deepestOf(this.data, n.vertex).slice(0, scatter ? 2 : 1) : [units.volume(volumeChange(this.data, n.vertex, this.depth))])];
     });
-    return table(['', 'Node', 'f(d)/d, N/m', 'Fit error normal', 'lateral', 'Volume change'], rows, [1, 2, 3, 4, 5]);
+    const last = measurement ? ['Deepest force', ...(scatter ? ['Scatter'] : [])] : ['Volume change'];
+    return table(['', 'Node', 'f(d)/d, N/m', 'Fit error normal', 'lateral', ...last], rows, [1, 2, 3, 4, 5, 6]);
   }
 
   chooser() {
