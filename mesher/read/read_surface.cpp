@@ -5,6 +5,9 @@
 #include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
 #include <CGAL/Polygon_mesh_processing/triangulate_faces.h>
 
+#include <array>
+#include <filesystem>
+#include <string>
 #include <utility>
 
 #include "format/error.hpp"
@@ -28,6 +31,7 @@
 namespace palpate::mesher {
 namespace {
 
+namespace fs = std::filesystem;
 namespace pmp = CGAL::Polygon_mesh_processing;
 
 Soup read_binary_stl(const std::string& where) {
@@ -47,21 +51,52 @@ Soup read_binary_stl(const std::string& where) {
   return soup;
 }
 
-Soup read_listed(const std::filesystem::path& path) {
-  const std::string where = path.string(), kind = ending(path);
-  check_readable(path);
-  if (kind == ".obj") return read_obj(path);
-  if (kind == ".off") return read_off(read_bytes(path), where);
-  if (kind == ".ply") return read_ply(read_bytes(path), where);
-  if (kind == ".vtp" || kind == ".vtu")
-    return surface_of(read_vtk_xml(read_bytes(path), where), where);
-  if (kind == ".vtk") return surface_of(read_vtk_legacy(read_bytes(path), where), where);
-  if (kind != ".stl") {
-    refuse_geometry(where, "unknown kind of surface file '" + kind + "'",
-                    "convert it to OFF, OBJ, PLY, STL or VTP");
-  }
-  const std::string bytes = read_bytes(path);
+Soup read_stl(const std::string& bytes, const std::string& where) {
   return is_text_stl(bytes) ? read_text_stl(bytes, where) : read_binary_stl(where);
+}
+
+/// A kind of file that holds a surface.
+struct SurfaceKind {
+  const char* ending;
+  const char* name;
+  Soup (*read)(const std::filesystem::path& path);
+};
+
+constexpr std::array<SurfaceKind, 7> kSurfaceKinds{{
+    {".off", "OFF", [](const fs::path& path) { return read_off(read_bytes(path), path.string()); }},
+    {".obj", "OBJ", [](const fs::path& path) { return read_obj(path); }},
+    {".ply", "PLY", [](const fs::path& path) { return read_ply(read_bytes(path), path.string()); }},
+    {".stl", "STL", [](const fs::path& path) { return read_stl(read_bytes(path), path.string()); }},
+    {".vtp", "VTK XML",
+     [](const fs::path& path) {
+       return surface_of(read_vtk_xml(read_bytes(path), path.string()), path.string());
+     }},
+    {".vtu", "VTK XML",
+     [](const fs::path& path) {
+       return surface_of(read_vtk_xml(read_bytes(path), path.string()), path.string());
+     }},
+    {".vtk", "VTK legacy",
+     [](const fs::path& path) {
+       return surface_of(read_vtk_legacy(read_bytes(path), path.string()), path.string());
+     }},
+}};
+
+/// "OFF (.off), OBJ (.obj) or VTK legacy (.vtk)".
+std::string known_kinds() {
+  std::string kinds;
+  for (const SurfaceKind& kind : kSurfaceKinds) {
+    if (!kinds.empty()) kinds += &kind == &kSurfaceKinds.back() ? " or " : ", ";
+    kinds += text(kind.name, " (", kind.ending, ")");
+  }
+  return kinds;
+}
+
+Soup read_listed(const std::filesystem::path& path) {
+  check_readable(path);
+  const std::string wanted = ending(path);
+  for (const SurfaceKind& kind : kSurfaceKinds)
+    if (wanted == kind.ending) return kind.read(path);
+  refuse_kind(path, "surface file", known_kinds());
 }
 
 void scale_to_metres(Soup& soup, const SurfaceFile& file, const Log& log) {

@@ -21,6 +21,19 @@ std::string ending(const std::filesystem::path& path) {
   return last == ".gz" ? lower(path.stem().extension().string()) + last : last;
 }
 
+void refuse_kind(const std::filesystem::path& path, const std::string& what,
+                 const std::string& kinds) {
+  const std::string kind = ending(path), where = path.string();
+  if (kind.ends_with(".gz"))
+    refuse_geometry(where, "a compressed " + what + " is not read",
+                    "unpack it: gunzip \"" + where + "\"");
+  if (kind.empty()) {
+    refuse_geometry(where, "its name has no ending that says which kind of " + what + " it is",
+                    "give it the ending of its kind: " + kinds);
+  }
+  refuse_geometry(where, "unknown kind of " + what + " '" + kind + "'", "convert it to " + kinds);
+}
+
 void check_readable(const std::filesystem::path& path) {
   const std::string where = path.string();
   std::error_code failure;

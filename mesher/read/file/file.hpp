@@ -18,6 +18,12 @@ std::string ending(const std::filesystem::path& path);
 /// @throws Error(Geometry) where the path is missing, no regular file or not readable.
 void check_readable(const std::filesystem::path& path);
 
+/// Throws Error(Geometry) for a file whose ending is that of no reader.
+/// @param what   for the message: "surface file"
+/// @param kinds  that are read, for the remedy
+[[noreturn]] void refuse_kind(const std::filesystem::path& path, const std::string& what,
+                              const std::string& kinds);
+
 /// All bytes of a file. @throws Error(Geometry) as `check_readable`, and for an empty file.
 std::string read_bytes(const std::filesystem::path& path);
 

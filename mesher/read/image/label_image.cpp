@@ -93,8 +93,7 @@ LabelImage read_label_image(const std::filesystem::path& path, double unit) {
   if (kind == ".nii" || kind == ".nii.gz")
     return read_nifti(nifti_bytes(path), unit, path.string());
   if (kind == ".nrrd" || kind == ".nhdr") return read_nrrd(read_bytes(path), unit, path);
-  refuse_geometry(path.string(), "unknown kind of image '" + kind + "'",
-                  "convert it to NIfTI (.nii, .nii.gz) or NRRD (.nrrd)");
+  refuse_kind(path, "image", "NIfTI (.nii, .nii.gz) or NRRD (.nrrd, .nhdr)");
 }
 
 }  // namespace palpate::mesher

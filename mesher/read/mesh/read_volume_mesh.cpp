@@ -45,9 +45,8 @@ MeshEntities read_entities(const VolumeMeshFile& file) {
   if (kind == ".feb") return read_febio(read_bytes(file.path), where);
   if (kind == ".mesh") return read_medit(read_bytes(file.path), where);
   if (kind == ".vtu" || kind == ".vtk") return read_vtk_entities(file);
-  refuse_geometry(
-      where, "unknown kind of volume mesh '" + kind + "'",
-      "convert it to .msh, .mesh, .vtu, .vtk, .inp, .feb or .node and .ele (meshio does)");
+  refuse_kind(file.path, "volume mesh",
+              ".msh, .mesh, .vtu, .vtk, .inp, .feb or .node and .ele (meshio does)");
 }
 
 /// Names of the regions that have elements, and of the other groups.

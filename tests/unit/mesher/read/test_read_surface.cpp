@@ -98,7 +98,11 @@ TEST(ReadSurface, RefusesFilesThatAreMissingOrUnreadable) {
                  ErrorKind::Configuration);
   expect_refused(settings_for(std::filesystem::temp_directory_path()), "", "not a readable file",
                  "permissions", ErrorKind::Configuration);
-  expect_file_refused("a.3ds", "x", "unknown kind of surface file '.3ds'", "convert");
+  // Each kind that the remedy names is read as that kind.
+  for (const char* kind : {".off", ".obj", ".ply", ".stl", ".vtp", ".vtu", ".vtk"})
+    expect_file_refused("a.3ds", "x", "unknown kind of surface file '.3ds'", kind);
+  expect_file_refused("a.stl.gz", "x", "a compressed surface file is not read", "gunzip");
+  expect_file_refused("skin", "x", "its name has no ending", ".vtk");
   expect_file_refused("empty.off", "", "the file is empty", "export");
   expect_file_refused("empty.obj", "# nothing\n", "no faces", "export");
   testing::internal::CaptureStderr();
