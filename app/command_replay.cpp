@@ -6,6 +6,7 @@
 
 #include "app/command.hpp"
 #include "app/console.hpp"
+#include "app/play/shipped.hpp"
 #include "app/replay/replay.hpp"
 #include "format/error.hpp"
 #include "format/sha256.hpp"
@@ -35,7 +36,8 @@ void open_writer(std::optional<RecordingWriter>& writer, const RecordingReader& 
 }
 
 /// Streams the recording. With --out, writes every step even after a difference.
-int replay_recording(const ReplayOptions& options) {
+int replay_recording(ReplayOptions options) {
+  options.library = chosen_library(options.library, shipped_folder()).string();
   RecordingReader recorded(options.recording);
   require_library_of(recorded.heading(), options);
   const palpate_library body(read_library(options.library));
@@ -70,7 +72,10 @@ void add_replay_command(CLI::App& root, Action& action) {
   const auto options = std::make_shared<ReplayOptions>();
   command->add_option("RECORDING", options->recording, "Recording of a session (recording.h5)")
       ->required();
-  command->add_option("--library", options->library, "Library of the session (library.h5)")
+  command
+      ->add_option(
+          "--library", options->library,
+          "That of the session: a ready-made name, a library.h5, a .plib or a folder with one")
       ->required();
   command->add_option("--out", options->out, "Write the repeated session (recording.h5)");
   command->callback(

@@ -228,6 +228,7 @@ class Pipeline(unittest.TestCase):
         self.run_ok("simulate", self.case, "--out", self.out)
         recording, library = self.out / "recording.h5", self.out / "library.h5"
         self.run_ok("replay", recording, "--library", library)
+        self.run_ok("replay", recording, "--library", self.out)
         other = self.root / "other.h5"
         other.write_bytes(library.read_bytes() + b"x")
         refused = palpate("replay", recording, "--library", other)

@@ -429,6 +429,25 @@ class Session(unittest.TestCase):
         with h5py.File(out) as file:
             self.assertEqual(len(file["step/time"]) + missed, 500)
 
+    def test_a_replay_takes_the_words_for_a_library_that_a_session_takes(self):
+        out, folder = self.root / "recording.h5", self.root / "folder"
+        session = self.run_arguments(out, 0.2)
+        session[session.index(self.library)] = "gel"
+        done = palpate(*session)
+        self.assertEqual(done.returncode, DONE, done.stderr)
+        folder.mkdir()
+        gel = Path(PALPATE).resolve().parent.parent / "share/palpate/libraries/gel.plib"
+        shutil.copy(gel, folder / "library.plib")
+        for word in ("gel", gel, folder):
+            replayed = palpate("replay", out, "--library", word)
+            self.assertEqual(replayed.returncode, DONE, (word, replayed.stderr))
+        refused = palpate("replay", out, "--library", "jelly")
+        self.assertEqual(refused.returncode, CONFIGURATION)
+        self.assertIn("gel", refused.stderr)  # it has the names
+        refused = palpate("replay", out, "--library", "tissue")
+        self.assertEqual(refused.returncode, CONFIGURATION)
+        self.assertIn("not the library of the recording", refused.stderr)
+
     def test_a_fifo_as_library_is_refused_at_once(self):
         fifo = self.root / "fifo.h5"
         os.mkfifo(fifo)
