@@ -27,7 +27,7 @@ void run_challenge(const Workspace& space, int tries, const EventSink& emit) {
                 "a force gradient exceeds the bound of the certificate",
                 "do not use this certificate; report the library, this is a defect of palpate");
   }
-  emit(LogLine{"certify", "the search confirms the certificate"});
+  emit(ChallengeVerdict{"certify", "the search confirms the certificate"});
 }
 
 }  // namespace palpate::app

@@ -34,6 +34,13 @@ void describe(V& v, const LogLine& e) {
 }
 
 template <class V>
+void describe(V& v, const ChallengeVerdict& e) {
+  v.event("verdict", "a result of `certify --challenge` in words");
+  v.field("stage", e.stage, "the stage");
+  v.field("text", e.text, "the result");
+}
+
+template <class V>
 void describe(V& v, const Warning& e) {
   v.event("warning", "the result may not be what was intended");
   v.field("stage", e.stage, "the stage");

@@ -36,6 +36,11 @@ struct LogLine {
   std::string stage, text;
 };
 
+/// What a search that was asked for has shown, in words.
+struct ChallengeVerdict {
+  std::string stage, text;
+};
+
 struct Warning {
   std::string stage, text;
 };
@@ -222,11 +227,12 @@ struct FileWritten {
   std::filesystem::path file;
 };
 
-using Event = std::variant<StageStarted, StageUpToDate, LogLine, Warning, MeshFinished,
-                           CampaignStarted, PreloadStep, SiteFinished, Progress, FinerMeshProgress,
-                           SamplingRound, SamplingFinished, CampaignFinished, MergeFinished,
-                           FitFinished, Certified, StiffnessAtRate, Softened, SteepestForce,
-                           ConvergenceLevel, ConvergenceOfForce, Estimate, FileWritten>;
+using Event =
+    std::variant<StageStarted, StageUpToDate, LogLine, ChallengeVerdict, Warning, MeshFinished,
+                 CampaignStarted, PreloadStep, SiteFinished, Progress, FinerMeshProgress,
+                 SamplingRound, SamplingFinished, CampaignFinished, MergeFinished, FitFinished,
+                 Certified, StiffnessAtRate, Softened, SteepestForce, ConvergenceLevel,
+                 ConvergenceOfForce, Estimate, FileWritten>;
 
 /// Receives the events of a stage, from one thread at a time.
 using EventSink = std::function<void(const Event&)>;

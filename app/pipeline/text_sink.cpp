@@ -49,6 +49,10 @@ void TextSink::print(const LogLine& e) {
   line("  {}", e.text);
 }
 
+void TextSink::print(const ChallengeVerdict& e) {
+  result("  {}", e.text);
+}
+
 void TextSink::warning(std::string_view text) {
   progress_.interrupt();
   console_.err.line(warning_line(text, console_.err.colour));
@@ -165,27 +169,27 @@ void TextSink::print(const Certified& e) {
 
 void TextSink::print(const StiffnessAtRate& e) {
   if (!std::isnan(e.certifiable_stiffness))
-    line("  {} at {} Hz: certifiable stiffness {} (Mahvash & Hayward 2005, eq. 5: {})", e.device,
-         e.rate, stiffness_text(e.certifiable_stiffness), stiffness_text(e.published_stiffness));
+    result("  {} at {} Hz: certifiable stiffness {} (Mahvash & Hayward 2005, eq. 5: {})", e.device,
+           e.rate, stiffness_text(e.certifiable_stiffness), stiffness_text(e.published_stiffness));
   if (!e.unknown.empty())
-    return line("  {}: no guarantee: its {} {} unknown", e.device, list_in_words(e.unknown),
-                e.unknown.size() == 1 ? "is" : "are");
+    return result("  {}: no guarantee: its {} {} unknown", e.device, list_in_words(e.unknown),
+                  e.unknown.size() == 1 ? "is" : "are");
   const double bound = std::min(e.certifiable_stiffness, e.certifiable_by_friction);
   if (bound < e.certifiable_stiffness)
-    line("    its dry friction certifies {} at its resolution", stiffness_text(bound));
+    result("    its dry friction certifies {} at its resolution", stiffness_text(bound));
   if (e.library_bound <= bound)
-    return line("    the library, {}, is certified; {:.2f} times its forces would be, too",
-                bound_text(e.library_bound), bound / e.library_bound);
-  line("    the library needs {}: {} of {} triangles exceed it, most of all triangle {}",
-       bound_text(e.library_bound), e.triangles_over, e.triangles, e.worst_triangle);
+    return result("    the library, {}, is certified; {:.2f} times its forces would be, too",
+                  bound_text(e.library_bound), bound / e.library_bound);
+  result("    the library needs {}: {} of {} triangles exceed it, most of all triangle {}",
+         bound_text(e.library_bound), e.triangles_over, e.triangles, e.worst_triangle);
   if (e.min_enforceable_bound <= bound)
-    return line(
+    return result(
         "    slides can be rate-limited to {}: certified with that bound or a larger one up to the "
         "certifiable stiffness, which --soften writes into a library and `palpate run` chooses by "
         "itself",
         bound_text(e.min_enforceable_bound));
-  if (std::isinf(e.min_enforceable_bound)) return line("    and no bound can be enforced");
-  line(
+  if (std::isinf(e.min_enforceable_bound)) return result("    and no bound can be enforced");
+  result(
       "    with rate-limited slides it needs {}: {:.2f} times its forces would be certified; "
       "--soften "
       "caps only the stiff slopes",
@@ -205,11 +209,11 @@ void TextSink::print(const Softened& e) {
 }
 
 void TextSink::print(const SteepestForce& e) {
-  if (e.triangle < 0) return line("  {}: nothing to search", e.contact);
+  if (e.triangle < 0) return result("  {}: nothing to search", e.contact);
   const std::string ratio = std::isfinite(e.bound)
                                 ? fmt::format("{:.2f} of the bound", e.slope / e.bound)
                                 : "there is no bound";
-  line(
+  result(
       "  {}: {} in triangle {}, {}; largest ratio to the bound of its own triangle {:.4f} ({} "
       "tries)",
       e.contact, stiffness_text(e.slope), e.triangle, ratio, e.largest_ratio, e.tries);
@@ -235,16 +239,17 @@ void TextSink::print(const ConvergenceOfForce& e) {
 }
 
 void TextSink::print(const Estimate& e) {
-  line(
+  result(
       "estimate: {}{} on {} nodes ({} unknowns) {} {} on {}, {} of it before the "
       "first site",
       e.adaptive ? "at most " : "", count_text(e.sites, "site"), e.nodes, e.unknowns,
       e.sites == 1 ? "takes" : "take", duration_text(e.seconds), count_text(e.threads, "thread"),
       duration_text(e.set_up_seconds));
-  line("  memory {:.2g} GB, library.h5 {}", 1e-9 * e.memory_bytes,
-       e.library_bytes > 0 ? fmt::format("{:.2g} MB", 1e-6 * e.library_bytes) : "of unknown size");
-  line("  from {} in {}; nothing was written", count_text(e.trial_sites, "trial site"),
-       duration_text(e.trial_seconds));
+  result(
+      "  memory {:.2g} GB, library.h5 {}", 1e-9 * e.memory_bytes,
+      e.library_bytes > 0 ? fmt::format("{:.2g} MB", 1e-6 * e.library_bytes) : "of unknown size");
+  result("  from {} in {}; nothing was written", count_text(e.trial_sites, "trial site"),
+         duration_text(e.trial_seconds));
 }
 
 void TextSink::print(const FileWritten& e) {

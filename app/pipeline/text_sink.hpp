@@ -17,6 +17,7 @@ class TextSink {
   void print(const StageStarted& e);
   void print(const StageUpToDate& e);
   void print(const LogLine& e);
+  void print(const ChallengeVerdict& e);
   void print(const Warning& e);
   void print(const MeshFinished& e);
   void print(const CampaignStarted& e);
@@ -38,11 +39,15 @@ class TextSink {
   void print(const Estimate& e);
   void print(const FileWritten& e);
 
+  /// A result that was asked for, which a quiet command prints too.
   template <class... Args>
-  void line(fmt::format_string<Args...> format, Args&&... args) {
-    if (console_.verbosity == Verbosity::Quiet) return;
+  void result(fmt::format_string<Args...> format, Args&&... args) {
     progress_.interrupt();
     console_.out.line(fmt::format(format, std::forward<Args>(args)...));
+  }
+  template <class... Args>
+  void line(fmt::format_string<Args...> format, Args&&... args) {
+    if (console_.verbosity != Verbosity::Quiet) result(format, std::forward<Args>(args)...);
   }
   void warning(std::string_view text);
 

@@ -95,6 +95,14 @@ class Manners(unittest.TestCase):
         self.assertEqual(palpate(*inspect, "-q").stdout, palpate(*inspect).stdout)
         self.assertIn("processors", palpate("doctor", "-q").stdout)
 
+    def test_quiet_prints_estimates_rates_and_searches(self):
+        """They are printed and nowhere else."""
+        for command, words in ((["build", "--estimate"], "estimate: "), (["certify", "--rate", 2000], "certifiable stiffness"),
+                               (["certify", "--challenge", 4], "the search confirms the certificate")):
+            quiet = palpate(command[0], self.case, *command[1:], "--out", self.out, "-q")
+            self.assertEqual((quiet.returncode, quiet.stderr), (DONE, ""))
+            self.assertIn(words, quiet.stdout)
+
     def test_verbose_prints_every_site(self):
         out = self.root / "verbose"
         palpate("mesh", self.case, "--out", out)

@@ -132,6 +132,27 @@ TEST(TextSink, PrintsOnlyWarningsWhenQuietAndEverySiteWhenVerbose) {
             "precompute: 10 of 10 sites, 1 incomplete, 0 s\n");
 }
 
+/// What leads to them is silenced, and so are stages that write files.
+TEST(TextSink, PrintsResultsThatWereAskedForWhenQuiet) {
+  const std::vector<Event> results{
+      stiffness(200, 100, 90),
+      stiffness(95, 100, 90),
+      stiffness(45, 100, 90),
+      stiffness(80, 100, kInfinity),
+      stiffness(NAN, 100, 90),
+      SteepestForce{"sticking", 90, 100, 3, 0.95, 400},
+      SteepestForce{"sliding", 0, 0, -1, 0, 0},
+      ChallengeVerdict{"certify", "the search confirms the certificate"},
+      Estimate{104, true, 8240, 24720, 113, 12, 2, 1.24e9, 158e3, 8}};
+  const std::string loud = text_of(results);
+  EXPECT_THAT(loud, HasSubstr("\n  the search confirms the certificate\n"));
+  std::vector<Event> all{StageStarted{"certify", "out/library.h5", "missing"}};
+  all.insert(all.end(), results.begin(), results.end());
+  all.push_back(certified());
+  all.push_back(Softened{4, 80, 0.01, 0.1, 0.2, "s.h5"});
+  EXPECT_EQ(text_of(all, false, Verbosity::Quiet), loud);
+}
+
 TEST(TextSink, StartsALineForAWarningWhereABarIsOpen) {
   const std::string shown = text_of({CampaignStarted{}, Progress{0, 0, 2, 10, 0, {}},
                                      Progress{10, 0, 0, 10, 0, {}}, Warning{"fit", "w"}},
