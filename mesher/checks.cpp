@@ -17,7 +17,6 @@ namespace {
 
 constexpr double kDeepestFraction = 0.8;  // of the thickness under the tool
 constexpr double kFewestPatches = 3;      // along the largest extent of the body
-constexpr double kMostNodes = 2e6;
 
 // Smallest volume of an element relative to a regular one with the same longest edge.
 constexpr double kSmallestVolume = 1e-9;
@@ -111,10 +110,19 @@ void check_lateral_travel(const Settings& settings, double largest) {
               "the surface");
 }
 
+/// Equilateral triangles of this edge on the surface.
+double facets_of(const Surface& skin, double edge) {
+  return area(skin) / (0.43 * edge * edge);
+}
+
+double interior_nodes_of(const Settings& settings, const Surface& skin) {
+  return 1.5 * signed_volume(skin) /
+         std::pow(settings.interior_coarsening * settings.element_size, 3);
+}
+
 void check_counts(const Settings& settings, const Surface& skin) {
   const double h = settings.element_size;
-  const double facets = area(skin) / (0.43 * h * h);  // equilateral triangles of edge h
-  const double interior = 1.5 * signed_volume(skin) / std::pow(settings.interior_coarsening * h, 3);
+  const double facets = facets_of(skin, h), interior = interior_nodes_of(settings, skin);
   if (facets > kMostNodes || interior > kMostNodes) {
     throw Error(ErrorKind::Configuration, settings.source().string(),
                 text("an element_size of ", millimetres(h), " needs about ", facets,
@@ -146,6 +154,10 @@ void check_sizes(const Settings& settings, const Surface& skin) {
   check_spacing(settings, largest);
   check_lateral_travel(settings, largest);
   if (settings.volume_mesh.path.empty()) check_counts(settings, skin);
+}
+
+double nodes_of(const Settings& settings, const Surface& skin) {
+  return facets_of(skin, settings.element_size) / 2 + interior_nodes_of(settings, skin);
 }
 
 void exclude_thin_sites(Body& body, const Settings& settings, const Surface& boundary) {

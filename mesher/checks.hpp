@@ -20,6 +20,12 @@ void check_settings(const Settings& settings);
 ///   Error(Geometry) for a lateral travel longer than the body, which every drag would leave.
 void check_sizes(const Settings& settings, const Surface& skin);
 
+/// Largest number of nodes of a mesh, and of facets of its boundary.
+inline constexpr double kMostNodes = 2e6;
+
+/// About the nodes of a mesh of the skin without layers and inclusions.
+double nodes_of(const Settings& settings, const Surface& skin);
+
 /// Excludes the sites where the depth is more than 0.8 of the thickness: nominal strains beyond
 /// -0.8 are outside the range of the laws and of a mesh of this kind. The log states how many and
 /// where.

@@ -13,6 +13,7 @@
 #include "mesher/read/image/image_field.hpp"
 #include "mesher/read/mesh/read_volume_mesh.hpp"
 #include "mesher/read/read_surface.hpp"
+#include "mesher/region_checks.hpp"
 #include "mesher/repair/change.hpp"
 #include "mesher/response/cavities.hpp"
 #include "mesher/response/response.hpp"
@@ -157,6 +158,8 @@ Body mesh(const Settings& settings) {
   const Surface skin = outer_surface(settings);
   const std::vector<Surface> inclusions = read_inclusions(settings);
   check_sizes(settings, skin);
+  check_places(settings, skin, inclusions);
+  check_thinness(settings, skin, inclusions);
   return body_of(discretize(settings, skin, inclusions), settings, {skin});
 }
 

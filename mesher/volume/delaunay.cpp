@@ -94,11 +94,22 @@ VolumeMesh mesh_request(const Oracle& oracle, std::vector<SizeSource> sizes, con
   return mesh;
 }
 
+bool has_region(const VolumeMesh& mesh, std::int32_t region) {
+  return std::find(mesh.region.begin(), mesh.region.end(), region) != mesh.region.end();
+}
+
 /// @throws Error(Geometry) for a region without tetrahedra.
-void check_regions(const VolumeMesh& mesh, const std::string& where) {
+/// @param filled_by_layers whether layers may leave nothing of the first region
+void check_regions(const VolumeMesh& mesh, bool filled_by_layers, const std::string& where) {
+  if (!filled_by_layers && !has_region(mesh, 0)) {
+    refuse_geometry(
+        where,
+        text("the inclusions fill the whole body: no tetrahedron belongs to the region '",
+             mesh.region_names.front(), "'"),
+        "check sizes and units of the inclusions, or remove one of them");
+  }
   for (std::size_t region = 1; region < mesh.region_names.size(); ++region) {
-    const auto number = static_cast<std::int32_t>(region);
-    if (std::find(mesh.region.begin(), mesh.region.end(), number) != mesh.region.end()) continue;
+    if (has_region(mesh, static_cast<std::int32_t>(region))) continue;
     refuse_geometry(where,
                     text("no tetrahedron belongs to the region '", mesh.region_names[region], "'"),
                     "check that it lies inside the skin, in the right unit and not inside a later "
@@ -126,7 +137,7 @@ VolumeMesh mesh_domain(const Domain& domain, const DelaunaySettings& settings,
   VolumeMesh mesh =
       mesh_request(*oracle, surface_sizes(here, sizing), frame, settings, where, report);
   mesh.region_names = domain.region_names;
-  check_regions(mesh, where);
+  check_regions(mesh, !domain.layers.empty(), where);
   return mesh;
 }
 

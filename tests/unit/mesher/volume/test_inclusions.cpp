@@ -68,7 +68,7 @@ TEST(Inclusions, MayNestCrossAndLeaveTheSkinButNotLieOutside) {
     return s;
   };
   const TemporaryFile outside("outside.off", off_text(test::sphere({0.2, 0, 0}, 0.01, 16)));
-  expect_refused(with(outside), "skin.off", "outside the skin", "unit");
+  expect_refused(with(outside), "outside.off", "outside the body", "unit");
   Settings isotropic = with(outside);
   isotropic.method = MeshMethod::Isotropic;
   const TemporaryFile across("across.off", off_text(test::sphere({0, 0.02, 0.02}, 0.01, 16)));
