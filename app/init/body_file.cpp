@@ -8,10 +8,12 @@
 #include <exception>
 #include <fstream>
 #include <map>
+#include <memory>
 #include <set>
 #include <string_view>
 #include <utility>
 
+#include "app/init/voxel_normals.hpp"
 #include "format/error.hpp"
 #include "mesher/geometry/faulty_faces.hpp"
 #include "mesher/read/file/file.hpp"
@@ -155,10 +157,15 @@ void read_segmentation(BodyFile& body, const std::string& given) {
     refuse_geometry(body.path.string(), "no voxel has a label", "export the segmentation again");
   body.surface = voxel_faces(image);
   body.area_excess = 1.5;  // mean of |n_x| + |n_y| + |n_z| over all directions n
-  if (body.unit_source == UnitSource::Stated && given.empty()) return;
-  find_unit(body, given, mesher::largest_dimension(body.surface.points));
-  if (!given.empty()) return;
-  for (Vec3& x : body.surface.points) x = body.unit.si * x;
+  const bool is_in_metres = body.unit_source == UnitSource::Stated || !given.empty();
+  if (!is_in_metres || !given.empty())
+    find_unit(body, given, mesher::largest_dimension(body.surface.points));
+  if (!is_in_metres) {
+    for (Vec3& x : body.surface.points) x = body.unit.si * x;
+    mesher::scale_image(image, body.unit.si, body.path.string());
+  }
+  const auto normals = std::make_shared<const VoxelNormals>(std::move(image));
+  body.inward = [normals](const Vec3& point) { return normals->inward(point); };
 }
 
 }  // namespace

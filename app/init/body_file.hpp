@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,9 +28,11 @@ struct BodyFile {
   std::filesystem::path path;
   Unit unit{"mm", 1e-3};
   UnitSource unit_source = UnitSource::Guessed;
-  std::optional<Unit> other_unit;    ///< nearly as likely
-  mesher::Surface surface;           ///< m, closed and outward; of an image the faces of its voxels
-  double area_excess = 1;            ///< area of `surface` over that of the body
+  std::optional<Unit> other_unit;  ///< nearly as likely
+  mesher::Surface surface;         ///< m, closed and outward; of an image the faces of its voxels
+  double area_excess = 1;          ///< area of `surface` over that of the body
+  /// Unit vector into the body at a point of `surface`, or zero; empty where the faces tell it.
+  std::function<Vec3(const Vec3&)> inward;
   bool was_repaired = false;         ///< the surface of the file has faults
   bool has_parts = false;            ///< several; `surface` is the largest
   std::vector<std::string> regions;  ///< of a volume mesh; empty otherwise

@@ -57,8 +57,9 @@ CountedCase counted_case(const CaseOf& made, int wanted) {
   double fewer = 0, more = 0;  // what was asked for where that many were made
   for (int i = 0; i < kMostTrials; ++i) {
     CountedCase trial;
-    trial.sizes = first_sizes(made.body.surface, made.base,
-                              std::max(1, static_cast<int>(asked * made.body.area_excess)));
+    trial.sizes =
+        first_sizes(made.body.surface, made.base,
+                    std::max(1, static_cast<int>(asked * made.body.area_excess)), made.body.inward);
     if (trial.sizes.patch_spacing == last_spacing) break;
     last_spacing = trial.sizes.patch_spacing;
     try {

@@ -35,9 +35,19 @@ std::vector<Face> faces_off(const Base& base, const Surface& surface) {
   return faces;
 }
 
+using Inward = std::function<Vec3(const Vec3&)>;
+
+/// The unit vector into the body at a face: across it, where nothing else tells.
+Vec3 inward_at(const Face& face, const Inward& inward) {
+  const Vec3 across = -mesher::unit(face.area_vector);
+  if (!inward) return across;
+  const Vec3 direction = inward(face.middle);
+  return dot(direction, across) > 0 ? direction : across;
+}
+
 /// Thicknesses below points that are spread over the area, ascending.
-std::vector<double> thicknesses(const Surface& surface, const std::vector<Face>& faces,
-                                double area) {
+std::vector<double> thicknesses(const Surface& surface, const std::vector<Face>& faces, double area,
+                                const Inward& inward_of) {
   constexpr int samples = 400;
   const mesher::SurfaceQuery query(surface);
   const double skin = 1e-6 * mesher::largest_dimension(surface.points);
@@ -47,7 +57,7 @@ std::vector<double> thicknesses(const Surface& surface, const std::vector<Face>&
     const double before = std::floor(passed * samples / area);
     passed += norm(face.area_vector) / 2;
     if (std::floor(passed * samples / area) == before) continue;
-    const Vec3 inward = -mesher::unit(face.area_vector);
+    const Vec3 inward = inward_at(face, inward_of);
     if (const auto hit = query.first_hit(face.middle + skin * inward, inward))
       found.push_back(*hit);
   }
@@ -62,11 +72,11 @@ double two_digits(double value) {
   return step * std::round(value / step);
 }
 
-FirstSizes first_sizes(const Surface& surface, const Base& base, int sites) {
+FirstSizes first_sizes(const Surface& surface, const Base& base, int sites, const Inward& inward) {
   const std::vector<Face> faces = faces_off(base, surface);
   FirstSizes sizes;
   for (const Face& face : faces) sizes.pressable_area += norm(face.area_vector) / 2;
-  const std::vector<double> below = thicknesses(surface, faces, sizes.pressable_area);
+  const std::vector<double> below = thicknesses(surface, faces, sizes.pressable_area, inward);
   const double extent = mesher::largest_dimension(surface.points);
   sizes.thickness = below.empty() ? extent : below[below.size() / 2];
   sizes.thin_parts = below.empty() ? extent : below[below.size() / 20];

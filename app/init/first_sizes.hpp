@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 
 #include "app/init/base.hpp"
@@ -44,6 +45,9 @@ double two_digits(double value);
 /// strain below a third of the thickness and 0.6 of that of thin parts, as long as it can
 /// be resolved; lateral paths of half the depth.
 /// @param surface closed, oriented outward
-FirstSizes first_sizes(const mesher::Surface& surface, const Base& base, int sites);
+/// @param inward unit vector into the body at a point of the surface, or zero; empty: across its
+///   faces
+FirstSizes first_sizes(const mesher::Surface& surface, const Base& base, int sites,
+                       const std::function<Vec3(const Vec3&)>& inward = {});
 
 }  // namespace palpate::app
