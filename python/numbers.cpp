@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "format/number_text.hpp"
 #include "python/errors.hpp"
 
 namespace py = pybind11;
@@ -21,6 +22,10 @@ std::string wanted_text(py::ssize_t rows, std::optional<py::ssize_t> columns) {
 }
 
 }  // namespace
+
+std::string given_text(double number) {
+  return std::isfinite(number) ? number_text(number) : std::string(py::repr(py::float_(number)));
+}
 
 std::string shape_text(const py::array& array) {
   std::string text = "(";

@@ -26,6 +26,9 @@ Doubles doubles_of(pybind11::handle argument, const std::string& name, pybind11:
 /// Three numbers.
 Vec3 vector_of(pybind11::handle argument, const std::string& name);
 
+/// A number that was given, for messages, "nan" and "inf" as Python prints them.
+std::string given_text(double number);
+
 /// "(4, 3)"
 std::string shape_text(const pybind11::array& array);
 

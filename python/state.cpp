@@ -12,7 +12,6 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
-#include "format/number_text.hpp"
 #include "python/arrays.hpp"
 #include "python/errors.hpp"
 #include "python/numbers.hpp"
@@ -28,7 +27,7 @@ std::shared_ptr<StateObject> make_state(const std::shared_ptr<LibraryObject>& li
                                         std::optional<double> lipschitz_bound, double search_rate) {
   if (friction && !(*friction >= 0)) {
     raise("ArgumentError",
-          "Library.state: friction is " + number_text(*friction) +
+          "Library.state: friction is " + given_text(*friction) +
               "; give a coefficient of at least 0, or None for that of the certificate");
   }
   palpate_settings settings{};
@@ -75,7 +74,7 @@ void require_times(const Doubles& dt, const std::string& name) {
   for (py::ssize_t i = 0; i < dt.size(); ++i) {
     if (dt.data()[i] > 0 && std::isfinite(dt.data()[i])) continue;
     const std::string place = dt.ndim() == 1 ? "[" + std::to_string(i) + "]" : "";
-    raise("ArgumentError", name + place + ": is " + number_text(dt.data()[i]) +
+    raise("ArgumentError", name + place + ": is " + given_text(dt.data()[i]) +
                                " s; give the time since the last step, above 0");
   }
 }
@@ -88,7 +87,7 @@ py::tuple step(StateObject& state, const py::object& position, const py::object&
     require_finite(x, "State.step: position");
     require_finite(v, "State.step: velocity");
     if (!(dt > 0 && std::isfinite(dt))) {
-      raise("ArgumentError", "State.step: dt is " + number_text(dt) +
+      raise("ArgumentError", "State.step: dt is " + given_text(dt) +
                                  " s; give the time since the last step, above 0");
     }
   }
@@ -130,8 +129,24 @@ void reset(StateObject& state) {
   palpate_state_reset(state.handle.get());
 }
 
+void require_constant(double value, const char* name, const char* unit) {
+  if (std::isnan(value) || (value >= 0 && std::isfinite(value))) return;
+  raise("ArgumentError", std::string("State.certified: ") + name + " is " + given_text(value) +
+                             " " + unit +
+                             "; give a finite value of at least 0, or nan where it is not known");
+}
+
 py::tuple certified(StateObject& state, double rate, double damping, double coulomb_friction,
                     double delay, double position_resolution, double force_resolution) {
+  if (!(rate > 0 && std::isfinite(rate))) {
+    raise("ArgumentError",
+          "State.certified: rate is " + given_text(rate) + " Hz; give a rate above 0");
+  }
+  require_constant(damping, "damping", "N s/m");
+  require_constant(coulomb_friction, "coulomb_friction", "N");
+  require_constant(delay, "delay", "s");
+  require_constant(position_resolution, "position_resolution", "m");
+  require_constant(force_resolution, "force_resolution", "N");
   const palpate_device_constants device{sizeof(palpate_device_constants),
                                         damping,
                                         coulomb_friction,
@@ -342,8 +357,10 @@ constexpr const char* kCertifiedText =
     "    -> (certified, reason)\n\n"
     "Whether a device renders this state passively at this rate of the force loop (Hz), and why "
     "not. damping: N s/m,\n"
-    "coulomb_friction: N, delay: s beyond one sample, resolutions: m and N. What is not known is "
-    "not certified.";
+    "coulomb_friction: N, delay: s beyond one sample, resolutions: m and N. What is not known "
+    "(nan) "
+    "is not certified. Raises ArgumentError\n"
+    "for negative and infinite values.";
 
 }  // namespace
 

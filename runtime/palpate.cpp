@@ -303,6 +303,13 @@ int palpate_state_certified(const palpate_state* state, const palpate_device_con
   }
   if (!(rate > 0 && std::isfinite(rate)))
     return fail(PALPATE_ERROR_ARGUMENT, "palpate_state_certified: the rate must be above 0");
+  for (const double constant : {device->damping, device->coulomb_friction, device->delay,
+                                device->position_resolution, device->force_resolution}) {
+    if (std::isnan(constant) || (constant >= 0 && std::isfinite(constant))) continue;
+    return fail(PALPATE_ERROR_ARGUMENT,
+                "palpate_state_certified: a constant of the device is negative or infinite; give "
+                "NaN for what is not known");
+  }
   return guarded(PALPATE_ERROR_MEMORY, [&] {
     const std::string reason = palpate::runtime::why_not_certified(
         *state,

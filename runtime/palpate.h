@@ -270,8 +270,9 @@ typedef struct palpate_device_constants {
 /* Sets size and every constant to NaN. */
 PALPATE_API void palpate_device_constants_default(palpate_device_constants* device);
 /* Is rendering this state on this device at this rate (Hz) certified passive? 1: it is; 0: it is
- * not, and palpate_last_error says why, with every unknown constant; negative: an error. The force
- * ramp and the clamp of a loop, and missed steps, are not covered. Not for the real-time thread. */
+ * not, and palpate_last_error says why, with every unknown constant; negative: an error, as for a
+ * constant that is negative or infinite. The force ramp and the clamp of a loop, and missed steps,
+ * are not covered. Not for the real-time thread. */
 PALPATE_API int palpate_state_certified(const palpate_state* state,
                                         const palpate_device_constants* device, double rate);
 

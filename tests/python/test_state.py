@@ -4,6 +4,7 @@
 
 Usage: test_state.py WRITE_BODIES LIBPALPATE PALPATE_H
 """
+import math
 import os
 import re
 import signal
@@ -152,6 +153,21 @@ class Forces(Bodies):
         bits = {name: 1 << int(bit) for name, bit in re.findall(r"PALPATE_(\w+) = 1u << (\d+)", text)}
         self.assertGreater(len(bits), 20)
         self.assertEqual({bit.name: bit.value for bit in palpate.Status}, bits)
+
+    def test_numbers_that_are_none_are_named_as_given(self):
+        """A negative or infinite constant is no constant of a device; nan stands for one that is not known."""
+        state = self.plate.state()
+        for name in ("damping", "coulomb_friction", "delay", "position_resolution", "force_resolution"):
+            for value, text in ((-5, "-5"), (-1e-3, "-0.001"), (math.inf, "inf")):
+                with self.assertRaisesRegex(palpate.ArgumentError, rf"{name} is {text}.*at least 0, or nan"):
+                    state.certified(1000, **{name: value})
+            self.assertIn("unknown", state.certified(1000, **{name: math.nan})[1])
+        with self.assertRaisesRegex(palpate.ArgumentError, "rate is nan Hz"):
+            state.certified(math.nan, damping=1)
+        with self.assertRaisesRegex(palpate.ArgumentError, "dt is nan s"):
+            state.step([0, 0, 0], [0, 0, 0], math.nan)
+        with self.assertRaisesRegex(palpate.ArgumentError, "friction is nan"):
+            self.plate.state(friction=math.nan)
 
     def test_certified_at_a_rate(self):
         bench = self.plate.certificate.devices[0]

@@ -70,6 +70,17 @@ TEST_F(PalpateApi, SaysWhetherAStateIsCertifiedAndWhyNot) {
   EXPECT_EQ(palpate_state_certified(&state, &device, kRate), 1);
   for (const double rate : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()})
     EXPECT_EQ(palpate_state_certified(&state, &device, rate), PALPATE_ERROR_ARGUMENT);
+  for (double palpate_device_constants::*constant :
+       {&palpate_device_constants::damping, &palpate_device_constants::coulomb_friction,
+        &palpate_device_constants::delay, &palpate_device_constants::position_resolution,
+        &palpate_device_constants::force_resolution}) {
+    for (const double wrong : {-5.0, std::numeric_limits<double>::infinity()}) {
+      palpate_device_constants other = device;
+      other.*constant = wrong;
+      EXPECT_EQ(palpate_state_certified(&state, &other, kRate), PALPATE_ERROR_ARGUMENT);
+      EXPECT_THAT(palpate_last_error(), HasSubstr("negative or infinite"));
+    }
+  }
   device.size = 0;
   EXPECT_EQ(palpate_state_certified(&state, &device, kRate), PALPATE_ERROR_ARGUMENT);
   EXPECT_EQ(palpate_state_certified(nullptr, &device, kRate), PALPATE_ERROR_ARGUMENT);
