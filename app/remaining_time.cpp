@@ -82,7 +82,13 @@ void RemainingTime::update(double now, std::int64_t done, std::int64_t total,
 /// A site that ended early does not tell how service is spread over the increments.
 void RemainingTime::finish(const Running& site, double service) {
   services_.push_back(service);
-  if (site.passed.empty() || site.passed.back().first < 1 || service <= 0) return;
+  if (service <= 0) return;
+  const std::pair<double, double> last =
+      site.passed.empty() ? std::pair(0.0, 0.0) : site.passed.back();
+  if (last.first < 1) {
+    early_ends_.push_back({last.first, last.second > 0 ? service / last.second : 1});
+    return;
+  }
   for (std::size_t i = 0; i <= kParts; ++i)
     parts_[i] += service_at(static_cast<double>(i) / kParts, site.passed);
 }
@@ -98,14 +104,30 @@ double RemainingTime::part_of_service(double fraction) const {
   return ((1 - within) * parts_[i] + within * parts_[i + 1]) / parts_[kParts];
 }
 
+/// Part of the service of a whole site that one takes which has come to this fraction, in the mean:
+/// some end early. One more whole site than was seen is reckoned with.
+double RemainingTime::expected_part(double fraction) const {
+  const double whole = static_cast<double>(services_.size() - early_ends_.size()) + 1;
+  double parts = whole, sites = whole;
+  for (const EarlyEnd& end : early_ends_) {
+    if (end.fraction < fraction) continue;
+    parts += std::min(1.0, end.excess * part_of_service(std::max(end.fraction, step_)));
+    ++sites;
+  }
+  return parts / sites;
+}
+
 /// By the increments that are done, and not less than the age of the site over the part that its
 /// next increment ends: 0 as long as nothing is known of increments.
 double RemainingTime::foretold_service(const Running& site, double served) const {
   if (step_ == 0) return 0;
   const double next = site.passed.empty() ? step_ : site.passed.back().first + step_;
-  const double least = age(site, served) / part_of_service(std::min(1.0, next));
-  if (site.passed.empty()) return least;
-  return std::max(least, site.passed.back().second / part_of_service(site.passed.back().first));
+  const double so_far = age(site, served);
+  double whole = so_far / part_of_service(std::min(1.0, next));
+  if (site.passed.empty()) return std::max(so_far, expected_part(0) * whole);
+  const auto& [fraction, service] = site.passed.back();
+  whole = std::max(whole, service / part_of_service(fraction));
+  return std::max(so_far, expected_part(fraction) * whole);
 }
 
 /// The services of finished sites, of those whose increments tell something, and of those that take

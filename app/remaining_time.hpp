@@ -34,6 +34,9 @@ struct SiteSharing {
 /// Sites on thin parts need ten times the service of others, and the quick ones finish first. A
 /// site that runs therefore counts with the service that its increments so far foretell, as it was
 /// spread over the increments of finished sites together: the quick ones tell little of that.
+///
+/// Sites may end early. One that runs does so as often as those did that had come as far as it, and
+/// after the part of its service that these took.
 class RemainingTime {
  public:
   /// By default for sites that share block solves.
@@ -69,6 +72,7 @@ class RemainingTime {
   static double age(const Running& site, double served);
   void finish(const Running& site, double service);
   double part_of_service(double fraction) const;
+  double expected_part(double fraction) const;
   double foretold_service(const Running& site, double served) const;
   std::vector<double> likely_services(double served) const;
   double remaining_service(const Running& site, double served, double mean) const;
@@ -83,6 +87,12 @@ class RemainingTime {
   double step_ = 0;                          ///< fraction of the increments that one is
   std::map<std::int32_t, Running> running_;  ///< by vertex
   std::vector<double> services_;             ///< s, of finished sites
+  /// A site that ended early: the fraction of its increments, and its service over that until the
+  /// last of these.
+  struct EarlyEnd {
+    double fraction = 0, excess = 1;
+  };
+  std::vector<EarlyEnd> early_ends_;
   /// Sum of the services of finished sites until i/kParts of their increments.
   static constexpr std::size_t kParts = 20;
   std::array<double, kParts + 1> parts_{};

@@ -44,9 +44,15 @@ double sharing(std::size_t n) {
 class Player {
  public:
   /// `favoured`: how much faster every third site is served than the others.
+  /// `last`: the increment after which a site ends; all where it is empty.
   Player(const std::vector<double>& durations, std::size_t places, Sharing slowness,
-         const SiteSharing& sharing = {}, double favoured = 1)
-      : durations_(durations), slowness_(slowness), favoured_(favoured), time_(sharing) {
+         const SiteSharing& sharing = {}, double favoured = 1, std::vector<int> last = {})
+      : durations_(durations),
+        last_(std::move(last)),
+        slowness_(slowness),
+        favoured_(favoured),
+        time_(sharing) {
+    last_.resize(durations.size(), kIncrements);
     time_.begin(kSetUp);
     while (sites_.size() < std::min(places, durations.size())) start_one();
     tell();
@@ -97,7 +103,7 @@ class Player {
     for (Site& site : sites_) site.worked += turn * site.speed;
     ++first->increments;
     tell();
-    if (first->increments < kIncrements) return;
+    if (first->increments < last_[static_cast<std::size_t>(first->vertex)]) return;
     sites_.erase(first);
     ++done_;
     tell();
@@ -107,6 +113,7 @@ class Player {
   }
 
   std::vector<double> durations_;
+  std::vector<int> last_;
   Sharing slowness_;
   double favoured_;
   RemainingTime time_;
@@ -196,6 +203,35 @@ TEST(RemainingTime, LearnsNothingOfIncrementsFromASiteThatEndedEarly) {
   time.update(2, 1, 3, {{1, 0.2}, {2, 0.0}});
   ASSERT_TRUE(time.left(2));
   EXPECT_GT(*time.left(2), 6);
+}
+
+/// The tool is too deep for the body: each site ends in one of its first increments.
+TEST(RemainingTime, IsRightWhereAllSitesEndEarly) {
+  std::vector<int> last(320);
+  for (std::size_t i = 0; i < last.size(); ++i) last[i] = 1 + static_cast<int>(i % 3);
+  for (const std::size_t places : {1U, 2U, 8U, 32U}) {
+    const Player player(scattered(320, 0.4), places, alone, {}, 1, last);
+    for (const NotedTime& e : player.estimates) {
+      const auto last_groups = static_cast<std::int64_t>(2 * places);
+      if (e.done < 48 || e.done + last_groups >= 320) continue;  // the end is its own
+      if (e.truth < 0.1 * player.estimates.front().truth) continue;
+      EXPECT_NEAR(e.left / e.truth, 1, 0.4) << places << " places, " << e.done << " done";
+    }
+  }
+}
+
+TEST(RemainingTime, IsRightWhereHalfOfTheSitesEndEarly) {
+  std::vector<int> last(320, kIncrements);
+  for (std::size_t i = 0; i < last.size(); i += 2) last[i] = 3;
+  for (const std::size_t places : {1U, 2U, 8U, 32U}) {
+    const Player player(scattered(320, 0.4), places, alone, {}, 1, last);
+    for (const NotedTime& e : player.estimates) {
+      const auto last_groups = static_cast<std::int64_t>(2 * places);
+      if (e.done < 48 || e.done + last_groups >= 320) continue;  // the end is its own
+      if (e.truth < 0.1 * player.estimates.front().truth) continue;
+      EXPECT_NEAR(e.left / e.truth, 1, 0.4) << places << " places, " << e.done << " done";
+    }
+  }
 }
 
 /// s of processor time of the 213 sites of the first case of the tongue of SOFA, by vertex. The
