@@ -83,8 +83,8 @@ void add_init_command(CLI::App& root, Action& action) {
   command
       ->add_option(
           "--minutes", options->minutes,
-          "Time that the campaign may take: trial sites are pressed, and depth and patches "
-          "chosen for it; 0: any, without trial")
+          "Time that the campaign may take: trial sites are pressed, and patches, refinement and "
+          "depth chosen for it; 0: any, without trial")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 100000.0));
   command->add_option("--threads", options->threads, "Threads (default: one for each processor)")

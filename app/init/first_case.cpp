@@ -89,8 +89,9 @@ void write_mesh(Text& text, const BodyFile& body, const FirstSizes& sizes) {
                               : "halve it for up to four times as many"));
   text.length("element_size", sizes.element_size,
               body.kind == BodyKind::VolumeMesh ? "no effect: the mesh is used as it is"
-              : sizes.is_refined ? "smaller ones under the tool are made for each site"
-                                 : "half a patch; smaller is more accurate");
+              : sizes.refinement != Refinement::None
+                  ? "smaller ones under the tool are made for each site"
+                  : "half a patch; smaller is more accurate");
 }
 
 /// The point of the plane below the middle of the body, to 1e-4 of its extent.
@@ -134,8 +135,26 @@ std::string reason_of_depth(const FirstSizes& sizes) {
   std::string reason =
       fmt::format("the body is {} mm thick in the median, and {} mm in thin parts",
                   number_text(1e3 * sizes.thickness), number_text(1e3 * sizes.thin_parts));
-  if (sizes.is_shallow) reason += "; deeper takes too long";
+  if (sizes.is_shallow)
+    reason +=
+        sizes.is_slow_where_thin ? "; deeper takes too long there" : "; deeper takes too long";
   return reason;
+}
+
+void write_refinement(Text& text, Refinement refinement) {
+  switch (refinement) {
+    case Refinement::ByContact:
+      return text.key("refine_under_tool", "\"contact\"",
+                      "elements under the tool as small as the contact asks for");
+    case Refinement::Once:
+      return text.key(
+          "refine_under_tool", "true",
+          "once; \"contact\" would make shallow forces more accurate, and takes too long");
+    case Refinement::None:
+      return text.line(
+          "# refine_under_tool = \"contact\" would make the forces more accurate, and takes too "
+          "long.");
+  }
 }
 
 void write_paths(Text& text, const FirstSizes& sizes) {
@@ -149,13 +168,7 @@ void write_paths(Text& text, const FirstSizes& sizes) {
            fmt::format("[\"{}\", \"{}\"]", mm(0.3 * sizes.depth), mm(0.8 * sizes.depth)),
            "two tell how the lateral response grows with depth");
   text.section("[solver]");
-  if (sizes.is_refined)
-    text.key("refine_under_tool", "\"contact\"",
-             "elements under the tool as small as the contact asks for");
-  else
-    text.line(
-        "# refine_under_tool = \"contact\" would make the forces more accurate, and takes too "
-        "long.");
+  write_refinement(text, sizes.refinement);
   text.key("mesh_error_sites", "4",
            "pressed on a finer mesh too: they bound the error of the mesh");
 }

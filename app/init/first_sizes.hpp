@@ -17,6 +17,13 @@ inline constexpr double kAreaOfVertex = 0.866;
 /// Depth over patch below which a contact is too small to be resolved by the elements.
 inline constexpr double kShallowestOverPatch = 0.12;
 
+/// How the elements under the tool are refined.
+enum class Refinement {
+  ByContact,  ///< as the contact asks for
+  Once,
+  None
+};
+
 /// Lengths in m, rounded to two digits.
 struct FirstSizes {
   double patch_spacing = 0;
@@ -24,14 +31,15 @@ struct FirstSizes {
   double tool_radius = 0;
   double depth = 0;
   double lateral_travel = 0;
-  double pressable_area = 0;          ///< m^2, that off the base
-  double thickness = 0;               ///< m, of the body below the surface, in the median
-  double thin_parts = 0;              ///< m, the thickness that a twentieth of the area is below
-  bool is_thin = false;               ///< the thickness, not the number of sites, sets the patches
-  bool is_coarsest = false;           ///< fewer sites would need patches that do not show the shape
-  bool is_shallow = false;            ///< pressed less deep than the shape allows, to save time
-  bool is_refined = true;             ///< under the tool, as the contact asks for
-  std::optional<std::int64_t> sites;  ///< of the meshed body, where it was meshed
+  double pressable_area = 0;        ///< m^2, that off the base
+  double thickness = 0;             ///< m, of the body below the surface, in the median
+  double thin_parts = 0;            ///< m, the thickness that a twentieth of the area is below
+  bool is_thin = false;             ///< the thickness, not the number of sites, sets the patches
+  bool is_coarsest = false;         ///< fewer sites would need patches that do not show the shape
+  bool is_shallow = false;          ///< pressed less deep than the shape allows, to save time
+  bool is_slow_where_thin = false;  ///< where it is shallow: thin parts take most of the time
+  Refinement refinement = Refinement::ByContact;
+  std::optional<std::int64_t> sites;           ///< of the meshed body, where it was meshed
   std::optional<std::int64_t> sites_too_slow;  ///< as many were tried, and took longer than wanted
   std::optional<double> seconds;               ///< that the campaign takes, where it was tried
 };

@@ -17,10 +17,23 @@ struct FirstWishes {
   static constexpr int kUsualSites = 200;
 };
 
+/// What makes a campaign shorter, the cheapest loss first.
+enum class Saving {
+  LargerPatches,  ///< fewer sites
+  OneRefinement,  ///< the elements under the tool divided once: shallow forces some percent off
+  NoRefinement,   ///< tens of percent off, where the contact is no larger than the elements
+  SmallerDepth,   ///< what is deeper is unknown
+  None
+};
+
+/// The next saving that the sizes leave.
+/// @param may_enlarge whether the number of sites is left open and larger patches save time
+/// @param may_refine_less whether less refinement saves time
+Saving cheapest_saving(const FirstSizes& sizes, bool may_enlarge, bool may_refine_less);
+
 /// The case with about as many sites as wanted. A few of them are pressed to tell how long all take
-/// (press_trial_sites). Where that is longer than wanted, sites are pressed less deep if thin parts
-/// take most of the time, and patches are larger if the number of sites was left open; a few
-/// times, until it fits or neither helps. At the end elements are not refined under the tool.
+/// (press_trial_sites). Where that is longer than wanted, the cheapest loss comes first
+/// (`cheapest_saving`), a few times, until it fits or none is left.
 /// Remarks and comments say what was chosen and why.
 /// @throws Error(Configuration) where the case itself would be refused
 FirstCase timely_case(const CaseOf& made, const FirstWishes& wishes);

@@ -62,7 +62,9 @@ TEST(FirstCase, RefinesUnderTheToolUnlessToldOtherwise) {
   const BodyFile body = read_body_file(test::source_folder() / "data/bodies/pad.off", "");
   const Base base = find_base(body.surface);
   FirstSizes sizes = first_sizes(body.surface, base, 200);
-  sizes.is_refined = false;
+  sizes.refinement = Refinement::Once;
+  EXPECT_EQ(refined(first_case(body, base, sizes, "pad.off", "")), 1);
+  sizes.refinement = Refinement::None;
   const FirstCase plain = first_case(body, base, sizes, "pad.off", "");
   EXPECT_EQ(refined(plain), 0);
   EXPECT_THAT(plain.toml, testing::HasSubstr("# refine_under_tool = \"contact\" would"));

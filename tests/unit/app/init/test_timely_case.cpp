@@ -78,11 +78,32 @@ TEST(TimelyCase, KeepsTheSitesThatAreAskedForAndPressesLessDeep) {
   EXPECT_NEAR(hurried.c.campaign.indentation.lateral_travel,
               hurried.c.campaign.indentation.depth / 2,
               0.05 * hurried.c.campaign.indentation.depth);
-  EXPECT_FALSE(hurried.is_refined());
-  EXPECT_THAT(hurried.first.toml, HasSubstr("# refine_under_tool = \"contact\" would"));
-  EXPECT_THAT(hurried.first.remarks.back(), HasSubstr("elements are not refined under the tool"));
+  // Elements are refined less where that is faster, and then both places say so.
+  EXPECT_EQ(hurried.is_refined(),
+            hurried.first.toml.find("and takes too long") == std::string::npos);
+  EXPECT_EQ(hurried.is_refined(),
+            hurried.first.remarks.back().find("refined under the tool") == std::string::npos);
   EXPECT_THAT(hurried.first.toml, HasSubstr("deeper takes too long"));
   EXPECT_THAT(hurried.first.remarks.back(), HasSubstr("pressed less deep"));
+  EXPECT_THAT(hurried.first.remarks.back(), Not(HasSubstr("thin parts")));  // it has none
+}
+
+/// What a user loses least by comes first: sites, then accuracy of shallow forces, then depth.
+TEST(TimelyCase, SavesTimeWhereTheLossIsLeast) {
+  FirstSizes sizes;
+  sizes.patch_spacing = 0.01;
+  sizes.depth = 0.004;
+  EXPECT_EQ(cheapest_saving(sizes, true, true), Saving::LargerPatches);
+  EXPECT_EQ(cheapest_saving(sizes, false, true), Saving::OneRefinement);
+  EXPECT_EQ(cheapest_saving(sizes, false, false), Saving::SmallerDepth);
+  sizes.is_coarsest = true;
+  EXPECT_EQ(cheapest_saving(sizes, true, true), Saving::OneRefinement);
+  sizes.refinement = Refinement::Once;
+  EXPECT_EQ(cheapest_saving(sizes, true, true), Saving::NoRefinement);
+  sizes.refinement = Refinement::None;
+  EXPECT_EQ(cheapest_saving(sizes, true, true), Saving::SmallerDepth);
+  sizes.depth = kShallowestOverPatch * sizes.patch_spacing;
+  EXPECT_EQ(cheapest_saving(sizes, true, true), Saving::None);
 }
 
 /// An aneurysm whose thin parts have sites once it is pressed less deep: those count, too.
