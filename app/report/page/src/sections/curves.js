@@ -118,7 +118,7 @@ export class Curves {
     this.neighbours = false;
     this.legend = el('div', {});
     this.element = el('div', { id: 'curves' }, this.normal.element, el('div', { class: 'lateral' }, this.lateral.element), this.legend,
-      paragraph('Markers: states of the curves. Lines: the rendered response, of drags at the depths and azimuths of the curves. Upright dashes: the depth of the picture, to which the stiffness and the change of the volume of the whole body belong.', 'note'),
+      paragraph(`Markers: states of the curves. Lines: the rendered response, of drags at the depths and azimuths of the curves. Upright dashes: the depth of the picture, to which the stiffness ${data.samples.measurement ? 'belongs' : 'and the change of the volume of the whole body belong'}.`, 'note'),
       ...legendOf(data), this.chooser());
     nodes.onChange(() => this.refresh());
     this.refresh();
