@@ -108,7 +108,7 @@ void RecordChecks::check_stiffness(const std::string& where, const m::PressCurve
 void RecordChecks::check_range(const std::string& where, const m::PressCurve& curve) {
   if (!curve.saturation) return;
   warn(
-      fmt::format("{}: {}, the load cell is at its limit, or the force was held; the curve ends "
+      fmt::format("{}: {}: the load cell is at its limit, or the force was held; the curve ends "
                   "before. Measure within the range of the load cell",
                   where, saturation_text(*curve.saturation)));
 }
@@ -116,7 +116,7 @@ void RecordChecks::check_range(const std::string& where, const m::PressCurve& cu
 void RecordChecks::check_range(const std::string& where, const m::History& history) {
   if (!history.saturation || history.control == m::Control::Force) return;
   warn(
-      fmt::format("{}: {}, the load cell is at its limit; the record is kept whole, with these "
+      fmt::format("{}: {}: the load cell is at its limit; the record is kept whole, with these "
                   "samples: leave it out, or measure within the range of the load cell",
                   where, saturation_text(*history.saturation)));
 }
