@@ -458,10 +458,10 @@ void contact(int cells) {
     return s;
   };
   for (const int levels : {0, 1, 2, 3}) contact_row(body, std::to_string(levels), with(levels));
-  for (const double size : {3.0, 2.0, 1.5}) {
+  for (const double size : {3.5, 2.5, IndentationSettings{}.size_over_contact}) {
     s.indentation.size_over_contact = size;
     char name[32];
-    std::snprintf(name, sizeof name, "contact, %.1f", size);
+    std::snprintf(name, sizeof name, "contact, %.2f", size);
     contact_row(body, name, with(IndentationSettings::kByContact));
   }
 }

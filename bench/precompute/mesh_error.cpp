@@ -36,6 +36,7 @@ using fem::CampaignSettings;
 using fem::IndentationSettings;
 
 constexpr double kRadius = 0.005;  // m, of the tool
+constexpr double kUsual = IndentationSettings{}.size_over_contact;
 /// Elements over contact radius of forces that stand for converged ones, where many are compared,
 /// and where the errors are smaller.
 constexpr double kConverged = 1, kFinest = 0.75;
@@ -172,7 +173,7 @@ void print_depths(const char* first) {
 }
 
 std::string name_of(double size_over_contact) {
-  return size_over_contact > 0 ? std::to_string(size_over_contact).substr(0, 3) : "none";
+  return size_over_contact > 0 ? std::to_string(size_over_contact).substr(0, 4) : "none";
 }
 
 std::vector<Pressed> bodies() {
@@ -194,7 +195,7 @@ void print_row(const std::string& name, double seconds, double relative, const R
 /// Relative errors in percent: mean and standard deviation over the places, and over all bodies.
 void against_size() {
   print_depths("| elements over contact radius | processor time, a site | over none |");
-  constexpr std::array kSizes{0.0, 2.0, 1.5};
+  constexpr std::array kSizes{0.0, 2.5, kUsual, 1.25};
   std::array<Row, kSizes.size()> all{};
   std::array<double, kSizes.size()> seconds{};
   const std::vector<Pressed> pressed = bodies();
@@ -237,9 +238,9 @@ void against_elements() {
   };
   CampaignSettings s = press(kDepths.back() * kRadius);
   s.points = body_of(0.002).points;
-  const Curves exact = forces(body_of(0.002).body, by_contact(s, 1.5)).curves;
-  for (const double size : {1.5, 0.0})
-    for (const double cell : {0.00667, 0.005, 0.00333, 0.0025}) {
+  const Curves exact = forces(body_of(0.002).body, by_contact(s, kUsual)).curves;
+  for (const double size : {kUsual, 0.0})
+    for (const double cell : {0.01, 0.00667, 0.005, 0.00333, 0.0025}) {
       fem::CampaignReport report;
       const Body body = body_of(cell).body;
       const Curves found = fem::run_campaign(body, size > 0 ? by_contact(s, size) : s, report);

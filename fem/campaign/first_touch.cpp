@@ -28,8 +28,10 @@ constexpr double kFinerByContact = 0.7;
 /// Depth at which the grading begins, over that of the first increment: the elements inside of its
 /// contact are then smaller than those at its edge, as they are inside of later contacts.
 constexpr double kFirstDepth = 0.5;
-/// Growth of elements outside of the contact, over their size inside.
-constexpr double kGrowthOverSize = 0.25;
+/// Growth of elements with the distance from the last contact: those of the body are reached soon.
+/// Where they are larger than the contact, slower growth costs as much as smaller elements under
+/// it, and helps less.
+constexpr double kGrowthOutside = 10;
 /// Distance of a tool that is not there, over the extent of the body.
 constexpr double kFarAway = 10;
 
@@ -49,7 +51,7 @@ SiteRefinement refinement_of(const CampaignContext& context, const PressPoint& p
                     kFirstDepth * settings.depth / settings.increments, settings.depth);
   const double finer = by_contact && settings.divide_once_more ? kFinerByContact : 1;
   refinement.size_over_distance = finer * settings.size_over_contact;
-  refinement.growth_outside = kGrowthOverSize * refinement.size_over_distance;
+  refinement.growth_outside = kGrowthOutside;
   return refinement;
 }
 

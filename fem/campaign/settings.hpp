@@ -52,7 +52,7 @@ struct IndentationSettings {
   static constexpr int kMaxRefinements = 6;
   /// Instead of a number: as often as the contact asks for, see SiteRefinement.
   static constexpr int kByContact = -1;
-  double size_over_contact = 1.5;  ///< of elements under the tool, over the contact radius
+  double size_over_contact = 1.75;  ///< of elements under the tool, over the contact radius
   /// All elements under the tool are divided once more than the settings above ask for, those that
   /// the contact divides as well, and those that it would divide: the error of the mesh shows.
   bool divide_once_more = false;

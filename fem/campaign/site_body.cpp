@@ -111,7 +111,7 @@ class Division {
   }
 
   double allowed_size(const ContactCore& core, double s) const {
-    return refinement_.size_over_distance * std::max(core.smallest, s) +
+    return refinement_.size_over_distance * std::max(core.smallest, std::min(s, core.largest / 2)) +
            refinement_.growth_outside * std::max(0.0, s - core.largest);
   }
 

@@ -28,11 +28,13 @@ enum class SiteMesh {
 /// How the elements around a site are divided, each by as often as its distance from the site asks
 /// for. By a number of levels: first the elements under the tool, then always those children that
 /// are within half the distance. By the contact: while their size is above
-///   h(s) = h_a max(a, s) + h_b max(0, s - b),
+///   h(s) = h_a max(a, min(s, b/2)) + h_b max(0, s - b),
 /// s the distance from the line where the contact begins, a and b those of its edge at the first
-/// and the last increment. A contact whose edge is anywhere between then has elements of h_a s
+/// and the last increment. A contact whose edge is anywhere up to b/2 then has elements of h_a s
 /// there and smaller ones inside, and each doubling of s costs as many elements as the one before.
-/// With both, or with several lines, an element is divided that any of them asks for.
+/// Contacts beyond b/2 have elements of h_a b/2 at their edges: outside of those that the last edge
+/// meets, elements may be those of the body. With both, or with several lines, an element is
+/// divided that any of them asks for.
 struct SiteRefinement {
   int levels = 1;                    ///< 0: by the contact alone
   int first_levels = 1;              ///< of `levels`: that divide all under the tool

@@ -119,6 +119,7 @@ TEST(IndentationOfAnEdge, GoesThroughASnapInFewIterations) {
   s.indentation.increments = 10;
   s.indentation.lateral_depths.clear();
   s.indentation.refine_under_tool = IndentationSettings::kByContact;
+  s.indentation.size_over_contact = 1.5;  // the mesh whose iterations are counted
   const double c = std::sqrt(0.5);
   for (const double y : {0.001, 0.0015, 0.0019}) s.points.push_back({{kHalf, y, 0}, {-c, 0, -c}});
   CampaignReport report;

@@ -122,6 +122,28 @@ TEST_F(SiteBodies, ContactsOfAnyRadiusCostTheSame) {
   EXPECT_GT(last, first / 2);
 }
 
+/// Elements of the body that are larger than the last contact begin close outside of its edge.
+TEST_F(SiteBodies, ContactDividesWhatItsLastEdgeMeetsAndLittleBeyond) {
+  const Body coarse = test::make_block(test::even(-0.04, 0.04, 4), test::even(-0.04, 0.04, 4),
+                                       test::even(-0.04, 0, 2));
+  const SolidModel of_coarse{coarse, {NeoHookean::from_young_poisson(10e3, 0.45, "t")}};
+  const Displacement undeformed = Displacement::Zero(3, of_coarse.mesh().nodes());
+  const double b = 0.004, size = 1.75;
+  SiteRefinement asked{
+      .levels = 0, .cores = {contact_around(site, 0.001, b)}, .size_over_distance = size};
+  std::vector<std::size_t> elements;
+  for (const double growth : {0.25 * size, 10.0}) {
+    asked.growth_outside = growth;
+    const SiteBody s(of_coarse, undeformed, site, tool, SiteMesh::RefinedWindow, asked);
+    for (const Tetrahedron10& t : s.mesh().tetrahedra) {
+      if (distance_of_centre(s.mesh(), t, site) >= b) continue;
+      EXPECT_LT(longest_edge(s.mesh(), t), 1.5 * size * b / 2);
+    }
+    elements.push_back(s.mesh().tetrahedra.size());
+  }
+  EXPECT_LT(elements[1], 0.7 * static_cast<double>(elements[0]));
+}
+
 TEST_F(SiteBodies, ContactLargerThanTheElementsDividesNone) {
   const SiteRefinement asked{
       .levels = 0, .cores = {contact_around(site, 0.02, 0.03)}, .size_over_distance = 1};
